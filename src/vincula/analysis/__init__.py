@@ -1,0 +1,1 @@
+"""Analyses of a linear model: mobility, equilibrium, manipulability, diagnosis."""

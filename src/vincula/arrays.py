@@ -1,0 +1,62 @@
+"""Array types and the checks at the door: finite, right shape, read-only."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vincula.errors import NonFiniteError, ShapeError
+
+Vector = NDArray[np.float64]
+"""One-dimensional array of doubles."""
+
+Matrix = NDArray[np.float64]
+"""Two-dimensional array of doubles."""
+
+
+def frozen(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same array, made read-only in place (for arrays that we own)."""
+    values.setflags(write=False)
+    return values
+
+
+def checked(
+    values: ArrayLike,
+    name: str,
+    shape: Sequence[int | None],
+) -> NDArray[np.float64]:
+    """A read-only double copy of `values`, checked for shape and for finite numbers.
+
+    Args:
+        values: Anything numpy can read as numbers.
+        name: What the array is, for messages.
+        shape: Expected shape; None stands for any size along that axis.
+
+    Raises:
+        ShapeError: The shape does not fit, or the values are not a table of numbers.
+        NonFiniteError: A value is NaN or infinite.
+    """
+    expected = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ShapeError(name, np.shape(_as_object(values)), f"numbers of shape {expected}") from None
+    fits = array.ndim == len(shape) and all(
+        n is None or n == got for n, got in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        raise ShapeError(name, array.shape, expected)
+    if not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise NonFiniteError(name, where, float(array[where]))
+    return frozen(array)
+
+
+def _as_object(values: Any) -> NDArray[np.object_]:
+    try:
+        return np.array(values, dtype=object)
+    except ValueError:
+        return np.empty(0, dtype=object)

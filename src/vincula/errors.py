@@ -1,0 +1,166 @@
+"""The one error tree: every refusal of the library is one of these classes.
+
+Each class carries the data of the refusal (names, values, valid choices) so that callers can act on
+it, and a message that names the place, the value, the valid choices and the repair.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+
+class VinculaError(Exception):
+    """Base class of every error that vincula raises on purpose."""
+
+
+class ModelError(VinculaError, ValueError):
+    """A mechanism, a matrix, a weight or a name that cannot be used."""
+
+
+class ShapeError(ModelError):
+    """An array has the wrong shape.
+
+    Attributes:
+        name: What the array is.
+        shape: The shape that was given.
+        expected: The shape that was expected, in words or numbers.
+    """
+
+    def __init__(self, name: str, shape: Sequence[int], expected: str) -> None:
+        self.name, self.shape, self.expected = name, tuple(shape), expected
+        super().__init__(f"{name} has shape {tuple(shape)}, expected {expected}")
+
+
+class NonFiniteError(ModelError):
+    """A number is NaN or infinite.
+
+    Attributes:
+        name: What holds the number.
+        index: Where in the array it is.
+        value: The number.
+    """
+
+    def __init__(self, name: str, index: tuple[int, ...] = (), value: float = float("nan")) -> None:
+        self.name, self.index, self.value = name, index, value
+        where = f"{name}[{', '.join(map(str, index))}]" if index else name
+        super().__init__(f"{where} is {value}: only finite numbers are allowed")
+
+
+class WeightError(ModelError):
+    """A weight that is not symmetric, not positive (semi)definite, or of the wrong size."""
+
+
+class TopologyError(ModelError):
+    """The graph of bodies and joints is not a mechanism: islands, self-joints, impossible cuts."""
+
+
+class MissingReferenceError(ModelError):
+    """No reference member is named.
+
+    Attributes:
+        candidates: Bodies that could be the reference member.
+    """
+
+    def __init__(self, candidates: Iterable[str]) -> None:
+        self.candidates = tuple(candidates)
+        super().__init__(
+            "no reference member: name the body whose motion and forces you want, one of "
+            + listing(self.candidates)
+        )
+
+
+class UnknownNameError(ModelError):
+    """A name that does not exist.
+
+    Attributes:
+        kind: What was looked for (joint, body, motor ...).
+        name: The text that was given.
+        choices: The names that exist.
+    """
+
+    def __init__(self, kind: str, name: str, choices: Iterable[str]) -> None:
+        self.kind, self.name, self.choices = kind, name, tuple(choices)
+        near = difflib.get_close_matches(name, self.choices, n=3)
+        hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
+        super().__init__(f"no {kind} is named {name!r}{hint} Known: {listing(self.choices)}")
+
+
+class DuplicateNameError(ModelError):
+    """Two things of one kind have the same name.
+
+    Attributes:
+        kind: What they are.
+        name: The name they share.
+    """
+
+    def __init__(self, kind: str, name: str) -> None:
+        self.kind, self.name = kind, name
+        super().__init__(f"two {kind}s are named {name!r}: every {kind} needs a name of its own")
+
+
+class MixedUnitsError(ModelError):
+    """An index over metres and radians together was asked for without saying how to weigh them."""
+
+
+class ClosureError(VinculaError):
+    """Loops are open, or cannot be closed.
+
+    Attributes:
+        loop: Name of the loop or contact with the largest gap.
+        gap: Its residual, metres (angles multiplied by the characteristic length).
+        details: Further data, by name: gaps of every loop, best configuration, lengths.
+    """
+
+    def __init__(self, message: str, *, loop: str = "", gap: float = float("nan"), **details: object) -> None:
+        self.loop, self.gap, self.details = loop, gap, details
+        super().__init__(message)
+
+
+class FileError(VinculaError):
+    """A file cannot be read or written.
+
+    Attributes:
+        problems: Every independent problem found, as printable texts `file:line:col: ...`.
+    """
+
+    def __init__(self, message: str, problems: Sequence[str] = ()) -> None:
+        self.problems = tuple(problems) or (message,)
+        super().__init__(message)
+
+
+class UnsupportedFeatureError(FileError):
+    """A file says something that vincula understands but cannot represent."""
+
+
+class MissingExtraError(VinculaError, ImportError):
+    """An optional dependency is not installed.
+
+    Attributes:
+        extra: Name of the extra that brings it.
+    """
+
+    def __init__(self, package: str, extra: str, purpose: str) -> None:
+        self.extra = extra
+        super().__init__(
+            f"{purpose} needs {package}, which is not installed. "
+            f"Install it with: python -m pip install 'vincula[{extra}]'"
+        )
+
+
+class RankAmbiguityWarning(UserWarning):
+    """A rank could not be decided: the answer depends on singular values near the uncertainty."""
+
+
+class MixedUnitsWarning(UserWarning):
+    """Unit weights over metres and radians: the result depends on the unit of length."""
+
+
+def listing(names: Iterable[str], most: int = 12) -> str:
+    """Names as a short readable list, `(none)` when empty, `... (n more)` when long."""
+    all_names = list(names)
+    if not all_names:
+        return "(none)"
+    shown = ", ".join(all_names[:most])
+    more = len(all_names) - most
+    return f"{shown} ... ({more} more)" if more > 0 else shown

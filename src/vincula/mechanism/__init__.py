@@ -1,0 +1,1 @@
+"""The mechanism: parts, graph, reduction, kinematics, catalog."""

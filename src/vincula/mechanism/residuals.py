@@ -1,0 +1,147 @@
+"""How far loops, contacts and couplings are from being closed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from vincula.arrays import Vector
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.joint_types import blocked_directions, motion
+from vincula.mechanism.kinematics import part_frames
+from vincula.mechanism.parts import ContactPart, Joint
+from vincula.spatial.poses import Pose, rotation_vector
+from vincula.spatial.selectors import contact_components
+
+if TYPE_CHECKING:
+    from vincula.mechanism.mechanism import Mechanism
+
+CLOSED = 1e-8
+"""A loop counts as closed when its residual is below this times the characteristic length."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopResidual:
+    """The gap of one loop, contact or coupling.
+
+    Attributes:
+        name: Name of the joint, contact or coupling.
+        kind: What it is.
+        linear: Distance by which positions miss [m].
+        angular: Angle by which orientations miss [rad].
+        gap: Both together, angles times the characteristic length [m].
+    """
+
+    name: str
+    kind: Literal["loop", "contact", "coupling"]
+    linear: float
+    angular: float
+    gap: float
+
+    def __str__(self) -> str:
+        parts = [f"{self.linear:.3g} m"] if self.linear or not self.angular else []
+        parts += [f"{self.angular:.3g} rad"] if self.angular else []
+        return f"{self.kind} {self.name!r} is open by {' and '.join(parts)}"
+
+
+def loop_residuals(
+    mechanism: Mechanism, q: Configuration, poses: Mapping[str, Pose]
+) -> tuple[LoopResidual, ...]:
+    """Gaps of everything outside the kinematic tree."""
+    tree = {joint.name for joint, _ in mechanism.tree}
+    length = mechanism.length
+    result = [
+        _measured(joint.name, "loop", *_joint_gap(mechanism, joint, q, poses), length)
+        for joint in mechanism.all_joints
+        if joint.name not in tree
+    ]
+    result += [
+        _measured(contact.name, "contact", *_contact_gap(mechanism, contact, poses), length)
+        for contact in mechanism.contacts
+    ]
+    return (*result, *_coupling_residuals(mechanism, q, length))
+
+
+def _measured(
+    name: str, kind: Literal["loop", "contact", "coupling"], linear: Vector, angular: Vector, length: float
+) -> LoopResidual:
+    far, turned = float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
+    return LoopResidual(name, kind, far, turned, math.hypot(far, length * turned))
+
+
+def _joint_gap(
+    mechanism: Mechanism, joint: Joint, q: Configuration, poses: Mapping[str, Pose]
+) -> tuple[Vector, Vector]:
+    """Gap of a joint outside the tree: of its whole pose where it has values, else of what it blocks."""
+    first, second = part_frames(joint, poses)
+    kind = mechanism.type_of(joint)
+    if joint.closure:
+        blocked = blocked_directions(kind, first, second, joint.lead, joint.second_axis)
+        linear = np.array(blocked.linear, dtype=bool)
+        return blocked.gaps[linear], blocked.gaps[~linear]
+    wanted = first @ motion(kind, q[joint.name], joint.lead, joint.second_axis)
+    turn = wanted.rotation.T @ second.rotation
+    angular = np.zeros(1) if np.array_equal(wanted.rotation, second.rotation) else rotation_vector(turn)
+    return second.position - wanted.position, angular
+
+
+def _contact_gap(
+    mechanism: Mechanism, contact: ContactPart, poses: Mapping[str, Pose]
+) -> tuple[Vector, Vector]:
+    first, second = part_frames(contact, poses)
+    s = mechanism.space.translations
+    components = contact_components(contact.type, mechanism.space)
+    offset = first.rotation.T @ (second.position - first.position)
+    if np.array_equal(first.rotation, second.rotation):
+        turn = np.zeros(mechanism.space.rotations)
+    else:
+        turn = rotation_vector(first.rotation.T @ second.rotation)
+    linear = np.array([offset[k] for k in components if k < s])
+    return linear, np.array([turn[k - s] for k in components if k >= s])
+
+
+def axis_values(mechanism: Mechanism, q: Configuration) -> dict[str, float]:
+    """Value of every axis that has a scalar value of its own."""
+    values: dict[str, float] = {}
+    for joint in mechanism.all_joints:
+        kind = mechanism.type_of(joint)
+        if kind.scalar_values and not joint.closure:
+            values.update(zip(kind.axis_names(joint.name), map(float, q[joint.name]), strict=True))
+    return values
+
+
+def axis_linear(mechanism: Mechanism) -> dict[str, bool]:
+    """For every axis, whether its rate is in m/s."""
+    return {
+        axis: linear
+        for joint in mechanism.all_joints
+        for axis, linear in zip(
+            mechanism.type_of(joint).axis_names(joint.name), mechanism.type_of(joint).linear, strict=True
+        )
+    }
+
+
+def _coupling_residuals(
+    mechanism: Mechanism, q: Configuration, length: float
+) -> list[LoopResidual]:
+    if not mechanism.couplings:
+        return []
+    values, home = axis_values(mechanism, q), axis_values(mechanism, mechanism.home)
+    linear = axis_linear(mechanism)
+    result = []
+    for coupling in mechanism.couplings:
+        if not set(coupling.axes) <= set(values):
+            continue
+        gap = abs(coupling.residual(values, home))
+        in_metres = any(linear[axis] for axis in coupling.rates)
+        result.append(
+            LoopResidual(
+                coupling.name, "coupling", gap if in_metres else 0.0, 0.0 if in_metres else gap,
+                gap if in_metres else gap * length,
+            )
+        )
+    return result

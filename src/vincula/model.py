@@ -1,0 +1,377 @@
+"""The waist of the hourglass: J_a, J_p and G at one configuration, with names, units and scales.
+
+Every source (a mechanism, a robot file, a live simulation, bare matrices) ends in a `LinearModel`;
+every analysis starts from one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vincula.arrays import Matrix, Vector, checked, frozen
+from vincula.errors import DuplicateNameError, ModelError, ShapeError, UnknownNameError
+from vincula.spatial.space import PLANAR, SPATIAL, Space
+
+if TYPE_CHECKING:
+    from vincula.numerics.rank import RankLedger
+    from vincula.weights import Weights
+
+RowKind = Literal["contact", "member cut", "loop cut", "coupling", "drive"]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One constraint row.
+
+    Attributes:
+        name: Unique name, `contact.component` or `joint.component`.
+        kind: contact, member cut, loop cut, coupling or drive.
+        source: Name of the contact, joint, coupling or motor that gives the row.
+        linear: True when the row is a velocity in m/s (its force in N), False for rad/s (N m).
+    """
+
+    name: str
+    kind: RowKind
+    source: str
+    linear: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One joint axis or motor.
+
+    Attributes:
+        name: Unique name of the axis or motor.
+        joint: Joint (or motor) that it belongs to.
+        linear: True when the rate is in m/s (its effort in N), False for rad/s (N m).
+    """
+
+    name: str
+    joint: str
+    linear: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """Where a joint was cut to open the graph.
+
+    Attributes:
+        joint: Name of the joint.
+        kind: `kept` (its columns stay, complete rows) or `contact` (its selector gives the rows).
+        role: `member cut` or `loop cut`.
+        at: Cut point at this configuration, ground axes [m].
+    """
+
+    joint: str
+    kind: Literal["kept", "contact"]
+    role: Literal["member cut", "loop cut"]
+    at: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """What is known about the errors of the matrices, apart from rounding.
+
+    Attributes:
+        residual: Largest closure residual, metres with angles times `length`; 0 for a mechanism
+            drawn in place.
+        digits_length: Half a unit of the last typed digit over all lengths [m].
+        digits_angle: The same over angles and directions [rad].
+        tolerance_length: Manufacturing tolerance on lengths [m].
+        tolerance_angle: Manufacturing tolerance on angles [rad].
+    """
+
+    residual: float = 0.0
+    digits_length: float = 0.0
+    digits_angle: float = 0.0
+    tolerance_length: float = 0.0
+    tolerance_angle: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyMotions:
+    """How bodies move when joints and reference member do; for verdicts in plain words.
+
+    Body b moves with twist  screws @ (path[b] * rates) + carried[b] * u, all twists being taken at
+    the reference point in ground axes.
+
+    Attributes:
+        names: Names of the bodies.
+        screws: d x n twists of every column of [J_a J_p] at the reference point.
+        path: bodies x n matrix of -1, 0, 1: the columns on the path from each body's root.
+        carried: For every body, True when it hangs from the reference member.
+        origin: The reference point in ground axes [m].
+    """
+
+    names: tuple[str, ...]
+    screws: Matrix
+    path: Matrix
+    carried: tuple[bool, ...]
+    origin: Vector
+
+    def twists(self, rates: Vector, twist: Vector) -> Matrix:
+        """d x bodies twists (at the reference point) of every body for joint rates and a member twist."""
+        joint_part: Matrix = self.screws @ (self.path * rates).T
+        return joint_part + np.outer(twist, np.array(self.carried, dtype=float))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScaledMatrices:
+    """The three matrices in scaled units; powers of two only, so no rank changes.
+
+    jacobian' = row * jacobian * column;  f = row * f',  rate = column * rate',  u = twist * u'.
+
+    Attributes:
+        active: Scaled J_a, m x n_a.
+        passive: Scaled J_p, m x n_p.
+        member: Scaled G^T, m x d.
+        row: Row factors, m.
+        active_column: Factors of the active columns, n_a.
+        passive_column: Factors of the passive columns, n_p.
+        twist: Factors of the twist components, d.
+    """
+
+    active: Matrix
+    passive: Matrix
+    member: Matrix
+    row: Vector
+    active_column: Vector
+    passive_column: Vector
+    twist: Vector
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """J_a, J_p and G of eqs. (1) and (15) at one configuration.
+
+    Attributes:
+        jacobian_active: J_a, m x n_a, rows m/s or rad/s per unit motor rate.
+        jacobian_passive: J_p, m x n_p.
+        grasp: G, d x m; G^T u is the velocity of the member side of every row.
+        rows: Name, kind and unit of every row.
+        motors: Names and units of the active columns.
+        passives: Names and units of the passive columns.
+        space: PLANAR or SPATIAL; None for bare matrices of another dimension.
+        length: Characteristic length L [m], a power of two; None for bare matrices without one.
+        uncertainty: Errors beyond rounding.
+        mechanism: Name of the mechanism.
+        reference: The reference member and point, in words.
+        frame: Axes of twist and wrench, in words.
+        cuts: How the graph was opened.
+        notes: Facts that the reader of a result must know.
+        weights: Weights declared with the model, None for the unit default.
+        motions: Geometry for verdicts; None for bare matrices.
+    """
+
+    jacobian_active: Matrix
+    jacobian_passive: Matrix
+    grasp: Matrix
+    rows: tuple[Row, ...]
+    motors: tuple[Column, ...]
+    passives: tuple[Column, ...]
+    space: Space | None
+    length: float | None = None
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    mechanism: str = "matrices"
+    reference: str = "member"
+    frame: str = "as given"
+    cuts: tuple[Cut, ...] = ()
+    notes: tuple[str, ...] = ()
+    weights: Weights | None = None
+    motions: BodyMotions | None = None
+
+    def __post_init__(self) -> None:
+        m = len(self.rows)
+        for name, matrix, shape in (
+            ("jacobian_active", self.jacobian_active, (m, len(self.motors))),
+            ("jacobian_passive", self.jacobian_passive, (m, len(self.passives))),
+            ("grasp", self.grasp, (None, m)),
+        ):
+            object.__setattr__(self, name, checked(matrix, name, shape))
+        if self.space is not None and self.grasp.shape[0] != self.space.dimension:
+            raise ShapeError("grasp", self.grasp.shape, f"({self.space.dimension}, {m})")
+        _refuse_duplicates("row", [row.name for row in self.rows])
+        _refuse_duplicates("joint axis", [c.name for c in (*self.motors, *self.passives)])
+
+    @staticmethod
+    def from_matrices(
+        J: ArrayLike,
+        G: ArrayLike,
+        active: Sequence[int | str] | Sequence[bool],
+        *,
+        columns: Sequence[str] | None = None,
+        rows: Sequence[str] | None = None,
+        linear_columns: Sequence[bool] | None = None,
+        linear_rows: Sequence[bool] | None = None,
+        length: float | None = None,
+        name: str = "matrices",
+    ) -> LinearModel:
+        """A model from a bare Jacobian and grasp matrix.
+
+        Args:
+            J: m x n Jacobian, rows already selected.
+            G: d x m grasp matrix, as in w = G f.
+            active: Indices (or names in `columns`) of the active columns, or n booleans.
+            columns: Names of the n joints, `q1` ... by default.
+            rows: Names of the m rows, `row1` ... by default.
+            linear_columns: For every column, whether its rate is in m/s (default: rad/s).
+            linear_rows: For every row, whether it is in m/s (default: m/s).
+            length: Characteristic length [m]; without one nothing is scaled.
+            name: Name of the mechanism in results.
+
+        Raises:
+            ShapeError: J and G do not fit together.
+            NonFiniteError: NaN or infinity in J or G.
+            UnknownNameError: An active column that does not exist.
+            DuplicateNameError: A name, or an active column, given twice.
+        """
+        jacobian = checked(J, "J", (None, None))
+        m, n = jacobian.shape
+        grasp = checked(G, "G", (None, m))
+        d = grasp.shape[0]
+        names = _names(columns, n, "q", "columns")
+        row_names = _names(rows, m, "row", "rows")
+        col_linear = _flags(linear_columns, n, False, "linear_columns")
+        row_linear = _flags(linear_rows, m, True, "linear_rows")
+        chosen = _active_indices(active, names)
+        rest = [i for i in range(n) if i not in set(chosen)]
+        column = [Column(names[i], names[i], col_linear[i]) for i in range(n)]
+        return LinearModel(
+            jacobian_active=jacobian[:, chosen],
+            jacobian_passive=jacobian[:, rest],
+            grasp=grasp,
+            rows=tuple(Row(r, "contact", r, lin) for r, lin in zip(row_names, row_linear, strict=True)),
+            motors=tuple(column[i] for i in chosen),
+            passives=tuple(column[i] for i in rest),
+            space={3: PLANAR, 6: SPATIAL}.get(d),
+            length=length,
+            mechanism=name,
+        )
+
+    @property
+    def dimension(self) -> int:
+        """Number of twist components d."""
+        return int(self.grasp.shape[0])
+
+    @property
+    def twist_components(self) -> tuple[str, ...]:
+        """Names of the twist components."""
+        return self.space.twist_components if self.space else tuple(f"u{i + 1}" for i in range(self.dimension))
+
+    @property
+    def wrench_components(self) -> tuple[str, ...]:
+        """Names of the wrench components."""
+        return self.space.wrench_components if self.space else tuple(f"w{i + 1}" for i in range(self.dimension))
+
+    @property
+    def twist_units(self) -> tuple[str, ...]:
+        """Units of the twist components."""
+        return self.space.twist_units if self.space else ("",) * self.dimension
+
+    @property
+    def wrench_units(self) -> tuple[str, ...]:
+        """Units of the wrench components."""
+        return self.space.wrench_units if self.space else ("",) * self.dimension
+
+    @property
+    def twist_linear(self) -> tuple[bool, ...]:
+        """Which twist components are linear velocities."""
+        s = self.space.translations if self.space else self.dimension
+        return tuple(i < s for i in range(self.dimension))
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """Active, then passive columns."""
+        return (*self.motors, *self.passives)
+
+    @cached_property
+    def scaled(self) -> ScaledMatrices:
+        """The matrices in scaled units: numerics page, step 1.
+
+        Linear rows are divided by L, linear columns (prismatic rates, linear twist components)
+        multiplied by it; L is a power of two, so every scaling is exact.
+        """
+        size = 1.0 if self.length is None else self.length
+        row = _factors([r.linear for r in self.rows], 1.0 / size)
+        active = _factors([c.linear for c in self.motors], size)
+        passive = _factors([c.linear for c in self.passives], size)
+        twist = _factors(self.twist_linear, size)
+        return ScaledMatrices(
+            active=frozen(row[:, None] * self.jacobian_active * active),
+            passive=frozen(row[:, None] * self.jacobian_passive * passive),
+            member=frozen(row[:, None] * self.grasp.T * twist),
+            row=row,
+            active_column=active,
+            passive_column=passive,
+            twist=twist,
+        )
+
+    @cached_property
+    def ledger(self) -> RankLedger:
+        """The ranks of this model: one ledger, shared by every analysis, evaluated on demand."""
+        from vincula.numerics.rank import RankLedger
+
+        return RankLedger.of_model(self)
+
+    def with_weights(self, weights: Weights | None) -> LinearModel:
+        """The same model with other default weights."""
+        return replace(self, weights=weights)
+
+
+def _factors(linear: Sequence[bool], factor: float) -> Vector:
+    return frozen(np.where(np.array(linear, dtype=bool), factor, 1.0))
+
+
+def _refuse_duplicates(kind: str, names: Sequence[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise DuplicateNameError(kind, name)
+        seen.add(name)
+
+
+def _names(given: Sequence[str] | None, count: int, prefix: str, what: str) -> list[str]:
+    if given is None:
+        return [f"{prefix}{i + 1}" for i in range(count)]
+    if len(given) != count:
+        raise ShapeError(what, (len(given),), f"({count},)")
+    return list(given)
+
+
+def _flags(given: Sequence[bool] | None, count: int, default: bool, what: str) -> list[bool]:
+    if given is None:
+        return [default] * count
+    if len(given) != count:
+        raise ShapeError(what, (len(given),), f"({count},)")
+    return [bool(value) for value in given]
+
+
+def _active_indices(active: Sequence[int | str] | Sequence[bool], names: Sequence[str]) -> list[int]:
+    given = list(active)
+    if given and all(isinstance(a, (bool, np.bool_)) for a in given):
+        if len(given) != len(names):
+            raise ShapeError("active", (len(given),), f"({len(names)},) booleans")
+        return [i for i, flag in enumerate(given) if flag]
+    chosen = [_active_index(item, names) for item in given]
+    for index in chosen:
+        if chosen.count(index) > 1:
+            raise DuplicateNameError("active column", names[index])
+    return chosen
+
+
+def _active_index(item: int | str | bool, names: Sequence[str]) -> int:
+    if isinstance(item, str):
+        if item not in names:
+            raise UnknownNameError("column", item, names)
+        return list(names).index(item)
+    if not isinstance(item, (int, np.integer)) or isinstance(item, (bool, np.bool_)):
+        raise ModelError(f"active column {item!r}: give an index, a name, or one boolean a column")
+    if not 0 <= item < len(names):
+        raise UnknownNameError("column", str(item), [str(i) for i in range(len(names))])
+    return int(item)

@@ -1,0 +1,1 @@
+"""Numbers under everything: what is zero, subspaces, cosines and sines."""

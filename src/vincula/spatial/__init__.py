@@ -1,0 +1,1 @@
+"""Spaces, poses, twists and the selectors of contacts and joints."""

@@ -1,0 +1,44 @@
+"""Twists as numbers at one point: (linear velocity of the point, angular velocity), ground axes.
+
+In the plane the angular velocity is one number and the cross products collapse to a quarter turn.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+
+
+def moment_arm(offset: Vector) -> Matrix:
+    """The matrix B with B @ omega = omega x offset: s x 1 in the plane, 3 x 3 in space.
+
+    Args:
+        offset: From the rotation's centre to the point whose velocity is wanted [m].
+    """
+    if offset.shape[0] == 2:
+        return np.array([[-offset[1]], [offset[0]]])
+    x, y, z = offset
+    return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+
+
+def transport(offset: Vector) -> Matrix:
+    """d x d matrix taking a twist at one point to the twist at the point `offset` away [m]."""
+    s = offset.shape[0]
+    d = 3 if s == 2 else 6
+    matrix = np.eye(d)
+    matrix[:s, s:] = moment_arm(offset)
+    return matrix
+
+
+def block_rotation(rotation: Matrix) -> Matrix:
+    """d x d matrix turning both halves of a twist (in the plane only the linear half)."""
+    s = rotation.shape[0]
+    if s == 2:
+        matrix = np.eye(3)
+        matrix[:2, :2] = rotation
+        return matrix
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3] = rotation
+    matrix[3:, 3:] = rotation
+    return matrix

@@ -1,0 +1,1 @@
+"""Pictures: scenes of plain drawables, and matplotlib figures."""
