@@ -9,142 +9,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from vincula.arrays import Matrix, Vector, checked, frozen
 from vincula.errors import DuplicateNameError, ModelError, ShapeError, UnknownNameError
+from vincula.labels import BodyMotions, Column, Cut, Row, ScaledMatrices, Uncertainty
 from vincula.spatial.space import PLANAR, SPATIAL, Space
 
 if TYPE_CHECKING:
     from vincula.numerics.rank import RankLedger
     from vincula.weights import Weights
-
-RowKind = Literal["contact", "member cut", "loop cut", "coupling", "drive"]
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One constraint row.
-
-    Attributes:
-        name: Unique name, `contact.component` or `joint.component`.
-        kind: contact, member cut, loop cut, coupling or drive.
-        source: Name of the contact, joint, coupling or motor that gives the row.
-        linear: True when the row is a velocity in m/s (its force in N), False for rad/s (N m).
-    """
-
-    name: str
-    kind: RowKind
-    source: str
-    linear: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One joint axis or motor.
-
-    Attributes:
-        name: Unique name of the axis or motor.
-        joint: Joint (or motor) that it belongs to.
-        linear: True when the rate is in m/s (its effort in N), False for rad/s (N m).
-    """
-
-    name: str
-    joint: str
-    linear: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Cut:
-    """Where a joint was cut to open the graph.
-
-    Attributes:
-        joint: Name of the joint.
-        kind: `kept` (its columns stay, complete rows) or `contact` (its selector gives the rows).
-        role: `member cut` or `loop cut`.
-        at: Cut point at this configuration, ground axes [m].
-    """
-
-    joint: str
-    kind: Literal["kept", "contact"]
-    role: Literal["member cut", "loop cut"]
-    at: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Uncertainty:
-    """What is known about the errors of the matrices, apart from rounding.
-
-    Attributes:
-        residual: Largest closure residual, metres with angles times `length`; 0 for a mechanism
-            drawn in place.
-        digits_length: Half a unit of the last typed digit over all lengths [m].
-        digits_angle: The same over angles and directions [rad].
-        tolerance_length: Manufacturing tolerance on lengths [m].
-        tolerance_angle: Manufacturing tolerance on angles [rad].
-    """
-
-    residual: float = 0.0
-    digits_length: float = 0.0
-    digits_angle: float = 0.0
-    tolerance_length: float = 0.0
-    tolerance_angle: float = 0.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BodyMotions:
-    """How bodies move when joints and reference member do; for verdicts in plain words.
-
-    Body b moves with twist  screws @ (path[b] * rates) + carried[b] * u, all twists being taken at
-    the reference point in ground axes.
-
-    Attributes:
-        names: Names of the bodies.
-        screws: d x n twists of every column of [J_a J_p] at the reference point.
-        path: bodies x n matrix of -1, 0, 1: the columns on the path from each body's root.
-        carried: For every body, True when it hangs from the reference member.
-        origin: The reference point in ground axes [m].
-    """
-
-    names: tuple[str, ...]
-    screws: Matrix
-    path: Matrix
-    carried: tuple[bool, ...]
-    origin: Vector
-
-    def twists(self, rates: Vector, twist: Vector) -> Matrix:
-        """d x bodies twists (at the reference point) of every body for joint rates and a member twist."""
-        joint_part: Matrix = self.screws @ (self.path * rates).T
-        return joint_part + np.outer(twist, np.array(self.carried, dtype=float))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ScaledMatrices:
-    """The three matrices in scaled units; powers of two only, so no rank changes.
-
-    jacobian' = row * jacobian * column;  f = row * f',  rate = column * rate',  u = twist * u'.
-
-    Attributes:
-        active: Scaled J_a, m x n_a.
-        passive: Scaled J_p, m x n_p.
-        member: Scaled G^T, m x d.
-        row: Row factors, m.
-        active_column: Factors of the active columns, n_a.
-        passive_column: Factors of the passive columns, n_p.
-        twist: Factors of the twist components, d.
-    """
-
-    active: Matrix
-    passive: Matrix
-    member: Matrix
-    row: Vector
-    active_column: Vector
-    passive_column: Vector
-    twist: Vector
-
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
@@ -262,12 +139,16 @@ class LinearModel:
     @property
     def twist_components(self) -> tuple[str, ...]:
         """Names of the twist components."""
-        return self.space.twist_components if self.space else tuple(f"u{i + 1}" for i in range(self.dimension))
+        if self.space:
+            return self.space.twist_components
+        return tuple(f"u{i + 1}" for i in range(self.dimension))
 
     @property
     def wrench_components(self) -> tuple[str, ...]:
         """Names of the wrench components."""
-        return self.space.wrench_components if self.space else tuple(f"w{i + 1}" for i in range(self.dimension))
+        if self.space:
+            return self.space.wrench_components
+        return tuple(f"w{i + 1}" for i in range(self.dimension))
 
     @property
     def twist_units(self) -> tuple[str, ...]:

@@ -70,7 +70,9 @@ def _normalised(joint: str, value: Vector, count: int) -> Vector:
     quaternion = value[-4:]
     size = float(np.linalg.norm(quaternion))
     if size < 1e-6:
-        raise ModelError(f"value of joint {joint!r}: the quaternion (w, x, y, z) {quaternion.tolist()} has length zero")
+        raise ModelError(
+            f"value of joint {joint!r}: the quaternion (w, x, y, z) {quaternion.tolist()} has length zero"
+        )
     if abs(size - 1.0) < 1e-14:
         return value
     return np.concatenate([value[:-4], quaternion / size])

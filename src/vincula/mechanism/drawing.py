@@ -153,7 +153,8 @@ class Drawing:
         """Add drawn parts; bodies are declared by use."""
         for body in bodies:
             self._declare(body)
-        for part in (*joints, *contacts):
+        parts: tuple[DrawnJoint | Contact, ...] = (*joints, *contacts)
+        for part in parts:
             for name in (part.first, part.second):
                 if name not in self._pose:
                     self._new_body(name, Pose.identity(self.space.translations))
@@ -174,8 +175,12 @@ class Drawing:
             self._new_body(body.fixed_to, Pose.identity(self.space.translations))
         self.joints += (
             Joint(
-                f"{body.name}.fixed", "fixed", body.fixed_to, body.name,
-                self._pose[body.fixed_to].inverse() @ pose, Pose.identity(self.space.translations),
+                f"{body.name}.fixed",
+                "fixed",
+                body.fixed_to,
+                body.name,
+                self._pose[body.fixed_to].inverse() @ pose,
+                Pose.identity(self.space.translations),
             ),
         )
 
@@ -243,9 +248,16 @@ class Drawing:
             raise ModelError(f"{what}: a screw needs a lead, its advance a turn in metres, not {drawn.lead}")
         pose = Pose.at(at, rotation)
         return Joint(
-            name=drawn.name, type=drawn.type, first=drawn.first, second=drawn.second,
-            frame_on_first=self._on_body(drawn.first, pose), frame_on_second=self._on_body(drawn.second, pose),
-            home=tuple(kind.zero), lead=drawn.lead, second_axis=second_axis, limits=drawn.limits,
+            name=drawn.name,
+            type=drawn.type,
+            first=drawn.first,
+            second=drawn.second,
+            frame_on_first=self._on_body(drawn.first, pose),
+            frame_on_second=self._on_body(drawn.second, pose),
+            home=tuple(kind.zero),
+            lead=drawn.lead,
+            second_axis=second_axis,
+            limits=drawn.limits,
         )
 
     def contact(self, drawn: Contact) -> ContactPart:
@@ -259,8 +271,13 @@ class Drawing:
             rotation = frame_with_z(normal, self._line(drawn, normal, what))
         pose = Pose.at(self.point(drawn.at, f"{what}: at"), rotation)
         return ContactPart(
-            drawn.name, drawn.type, drawn.first, drawn.second,
-            self._on_body(drawn.first, pose), self._on_body(drawn.second, pose), drawn.friction,
+            drawn.name,
+            drawn.type,
+            drawn.first,
+            drawn.second,
+            self._on_body(drawn.first, pose),
+            self._on_body(drawn.second, pose),
+            drawn.friction,
         )
 
     def _line(self, drawn: Contact, normal: Vector, what: str) -> Vector | None:
@@ -272,12 +289,16 @@ class Drawing:
             raise ModelError(f"{what}: a line contact needs `line`, the direction of the line")
         line = self.direction(drawn.line, f"{what}: line")
         if abs(float(line @ normal)) > 1e-6:
-            raise ModelError(f"{what}: the line {line.tolist()} is not perpendicular to the normal {normal.tolist()}")
+            raise ModelError(
+                f"{what}: the line {line.tolist()} is not perpendicular to the normal {normal.tolist()}"
+            )
         return line
 
     def _on_body(self, body: str, pose: Pose) -> Pose:
         frame = self._pose[body]
-        at_ground_origin = not frame.position.any() and np.array_equal(frame.rotation, np.eye(len(frame.position)))
+        at_ground_origin = not frame.position.any() and np.array_equal(
+            frame.rotation, np.eye(len(frame.position))
+        )
         return pose if at_ground_origin else frame.inverse() @ pose
 
     def reference(self, drawn: Reference, mechanism: Mechanism) -> ReferenceMember:
@@ -298,52 +319,3 @@ def _given(value: Place | None, what: str, key: str) -> Place:
     if value is None:
         raise TopologyError(f"{what} needs `{key}`")
     return value
-
-
-def Revolute(name: str, first: str, second: str, at: Place, axis: Place = (0, 0, 1), *, limits: Limits | None = None) -> DrawnJoint:
-    """A revolute joint about `axis` through `at` (in the plane about its normal)."""
-    return DrawnJoint(name, "revolute", first, second, at, axis, limits=_one(limits))
-
-
-def Prismatic(name: str, first: str, second: str, axis: Place, at: Place | None = None, *, limits: Limits | None = None) -> DrawnJoint:
-    """A prismatic joint along `axis`; `at` (any point on it) only places it in pictures."""
-    return DrawnJoint(name, "prismatic", first, second, at, axis, limits=_one(limits))
-
-
-def Screw(name: str, first: str, second: str, at: Place, axis: Place, lead: float, *, limits: Limits | None = None) -> DrawnJoint:
-    """A screw about `axis` through `at`; `lead` is its advance a turn [m], right-handed if positive."""
-    return DrawnJoint(name, "screw", first, second, at, axis, lead=lead, limits=_one(limits))
-
-
-def Cylindrical(name: str, first: str, second: str, at: Place, axis: Place) -> DrawnJoint:
-    """A cylindrical joint: rotation about and translation along `axis`."""
-    return DrawnJoint(name, "cylindrical", first, second, at, axis)
-
-
-def Universal(name: str, first: str, second: str, at: Place, axes: tuple[Place, Place]) -> DrawnJoint:
-    """A universal joint: first axis on the first body, second axis on the second."""
-    return DrawnJoint(name, "universal", first, second, at, axes[0], second_axis=axes[1])
-
-
-def Spherical(name: str, first: str, second: str, at: Place) -> DrawnJoint:
-    """A spherical joint (ball) at `at`."""
-    return DrawnJoint(name, "spherical", first, second, at)
-
-
-def PlanarJoint(name: str, first: str, second: str, at: Place, normal: Place = (0, 0, 1)) -> DrawnJoint:
-    """A planar joint: two translations in, one rotation about the normal of, a plane."""
-    return DrawnJoint(name, "planar", first, second, at, normal)
-
-
-def Fixed(name: str, first: str, second: str, at: Place | None = None) -> DrawnJoint:
-    """A fixed joint: the two bodies move as one."""
-    return DrawnJoint(name, "fixed", first, second, at)
-
-
-def Free(name: str, first: str, second: str, at: Place | None = None) -> DrawnJoint:
-    """A free joint: the second body floats (a floating base when the first is the ground)."""
-    return DrawnJoint(name, "free", first, second, at)
-
-
-def _one(limits: Limits | None) -> tuple[Limits, ...]:
-    return () if limits is None else (limits,)

@@ -14,13 +14,14 @@ import numpy as np
 
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import ClosureError, MissingReferenceError
+from vincula.labels import BodyMotions, Column, Cut, Row, Uncertainty
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import axis_twists, blocked_directions
 from vincula.mechanism.kinematics import body_poses, part_frames, reference_position
 from vincula.mechanism.parts import GROUND, ContactPart
 from vincula.mechanism.reduction import CutJoint, Reduction
 from vincula.mechanism.residuals import CLOSED, axis_linear, axis_values, loop_residuals
-from vincula.model import BodyMotions, Column, Cut, LinearModel, Row, Uncertainty
+from vincula.model import LinearModel
 from vincula.spatial.poses import Pose
 from vincula.spatial.selectors import component_names, contact_components, selector
 from vincula.spatial.twists import block_rotation, transport
@@ -55,8 +56,11 @@ def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
         space=mechanism.space,
         length=mechanism.length,
         uncertainty=Uncertainty(
-            residual, precision.digits_length, precision.digits_angle,
-            precision.tolerance_length, precision.tolerance_angle,
+            residual,
+            precision.digits_length,
+            precision.digits_angle,
+            precision.tolerance_length,
+            precision.tolerance_angle,
         ),
         mechanism=mechanism.name,
         reference=reference.label or reference.body,
@@ -80,7 +84,9 @@ def _closed(mechanism: Mechanism, q: Configuration, poses: Mapping[str, Pose]) -
         raise ClosureError(
             f"{worst}{more}: the configuration does not satisfy the mechanism, and nothing was moved. "
             "Give values for all joints of the loop that close it, or ask for closing.",
-            loop=worst.name, gap=worst.gap, residuals=residuals,
+            loop=worst.name,
+            gap=worst.gap,
+            residuals=residuals,
         )
     return worst.gap
 
@@ -226,7 +232,9 @@ class _Builder:
     def path_columns(self, body: str) -> tuple[list[int], list[int]]:
         """Columns, and their signs, on the way from a body's root to it."""
         if body not in self._path_columns:
-            found = [(i, sign) for joint, sign in self.reduction.paths[body] for i in self.of_joint.get(joint, ())]
+            found = [
+                (i, sign) for joint, sign in self.reduction.paths[body] for i in self.of_joint.get(joint, ())
+            ]
             self._path_columns[body] = ([i for i, _ in found], [sign for _, sign in found])
         return self._path_columns[body]
 

@@ -318,11 +318,14 @@ def values_between(kind: JointType, first: Pose, second: Pose, second_axis: Vect
 
 def _angle_about(rotation: Matrix, axis: Vector) -> float:
     sine = 0.5 * float(
-        axis @ np.array([
-            rotation[2, 1] - rotation[1, 2],
-            rotation[0, 2] - rotation[2, 0],
-            rotation[1, 0] - rotation[0, 1],
-        ])
+        axis
+        @ np.array(
+            [
+                rotation[2, 1] - rotation[1, 2],
+                rotation[0, 2] - rotation[2, 0],
+                rotation[1, 0] - rotation[0, 1],
+            ]
+        )
     )
     return math.atan2(sine, 0.5 * (float(np.trace(rotation)) - 1.0))
 

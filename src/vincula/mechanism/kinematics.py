@@ -79,11 +79,8 @@ def characteristic_length(mechanism: Mechanism) -> float:
     """
     poses = body_poses(mechanism, mechanism.home)
     centre = reference_position(mechanism, poses)
-    points = [
-        part_frames(part, poses)[0].position
-        for part in (*mechanism.joints, *mechanism.contacts)
-        if part.type not in ("free", "fixed")
-    ]
+    parts: tuple[Joint | ContactPart, ...] = (*mechanism.joints, *mechanism.contacts)
+    points = [part_frames(part, poses)[0].position for part in parts if part.type not in ("free", "fixed")]
     if not points:
         return 1.0
     square = float(np.mean(np.sum((np.array(points) - centre) ** 2, axis=1)))

@@ -104,7 +104,9 @@ class Mechanism:
         Raises:
             ModelError: Any part that cannot be used; see the subclasses.
         """
-        return _drawn(PLANAR, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name)
+        return _drawn(
+            PLANAR, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name
+        )
 
     @staticmethod
     def spatial(
@@ -125,7 +127,9 @@ class Mechanism:
         Raises:
             ModelError: Any part that cannot be used; see the subclasses.
         """
-        return _drawn(SPATIAL, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name)
+        return _drawn(
+            SPATIAL, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name
+        )
 
     # Looking things up ----------------------------------------------------------------------
 
@@ -269,9 +273,7 @@ class Mechanism:
             return values
         return self.home.replaced(values)
 
-    def body_poses(
-        self, q: Mapping[str, float | Sequence[float] | Vector] | None = None
-    ) -> dict[str, Pose]:
+    def body_poses(self, q: Mapping[str, float | Sequence[float] | Vector] | None = None) -> dict[str, Pose]:
         """Pose of every body (and the ground) in ground axes, through the kinematic tree."""
         from vincula.mechanism.kinematics import body_poses
 
@@ -313,9 +315,7 @@ class Mechanism:
 
         return characteristic_length(self)
 
-    def linearize(
-        self, q: Mapping[str, float | Sequence[float] | Vector] | None = None
-    ) -> LinearModel:
+    def linearize(self, q: Mapping[str, float | Sequence[float] | Vector] | None = None) -> LinearModel:
         """J_a, J_p and G at a configuration (the home configuration by default).
 
         Raises:
@@ -359,5 +359,3 @@ def _drawn(
     if reference is not None:
         mechanism = replace(mechanism, reference=drawing.reference(reference, mechanism))
     return mechanism.with_active(active)
-
-

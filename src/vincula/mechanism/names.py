@@ -12,7 +12,7 @@ import numpy as np
 
 from vincula.arrays import Vector, checked
 from vincula.errors import DuplicateNameError, TopologyError, UnknownNameError
-from vincula.mechanism.parts import GROUND, _All
+from vincula.mechanism.parts import GROUND, ContactPart, Joint, _All
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
@@ -106,9 +106,10 @@ def default_point(mechanism: Mechanism, body: str) -> Vector:
     zero = np.zeros(mechanism.space.translations)
     if not mechanism.body[body].drawn:
         return zero
+    parts: tuple[Joint | ContactPart, ...] = (*mechanism.joints, *mechanism.contacts)
     points = [
         (part.frame_on_first if part.first == body else part.frame_on_second).position
-        for part in (*mechanism.joints, *mechanism.contacts)
+        for part in parts
         if body in (part.first, part.second) and part.type != "free"
     ]
     return np.asarray(np.mean(points, axis=0)) if points else zero

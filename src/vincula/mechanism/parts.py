@@ -175,15 +175,15 @@ class Coupling:
         def total(terms: Mapping[str, float]) -> float:
             return sum(c * (values[a] - self.references.get(a, home[a])) for a, c in terms.items())
 
-        return total(self.rates) - float(np.polynomial.polynomial.polyval(total(self.driver), self.polynomial or [0.0]))
+        return total(self.rates) - float(
+            np.polynomial.polynomial.polyval(total(self.driver), self.polynomial or [0.0])
+        )
 
     def coefficients(self, values: Mapping[str, float], home: Mapping[str, float]) -> dict[str, float]:
         """The coupling row: derivative of the residual by axis."""
         row = {axis: float(c) for axis, c in self.rates.items()}
         if self.driver:
-            inner = sum(
-                c * (values[a] - self.references.get(a, home[a])) for a, c in self.driver.items()
-            )
+            inner = sum(c * (values[a] - self.references.get(a, home[a])) for a, c in self.driver.items())
             slope = float(
                 np.polynomial.polynomial.polyval(
                     inner, np.polynomial.polynomial.polyder(list(self.polynomial) or [0.0])

@@ -77,18 +77,17 @@ def reduce_graph(mechanism: Mechanism) -> Reduction:
     ground, member = cluster[GROUND], cluster[reference.body]
     if ground == member:
         raise TopologyError(
-            f"the reference member {reference.body!r} is fixed to the ground: it cannot move, choose another body"
+            f"the reference member {reference.body!r} is fixed to the ground: it cannot move; "
+            "choose another body"
         )
     skipped = {j.name for j in mechanism.all_joints if _between_roots(mechanism, j, cluster, ground, member)}
     joints = [
-        j for j in mechanism.all_joints
-        if cluster[j.first] != cluster[j.second] and j.name not in skipped
+        j for j in mechanism.all_joints if cluster[j.first] != cluster[j.second] and j.name not in skipped
     ]
     forest = _Forest(mechanism, joints, cluster, ground, member)
     tree = forest.tree
     rigid_loops = [
-        j for j in mechanism.all_joints
-        if cluster[j.first] == cluster[j.second] and not _merges(mechanism, j)
+        j for j in mechanism.all_joints if cluster[j.first] == cluster[j.second] and not _merges(mechanism, j)
     ]
     cuts = [_cut(mechanism, j, forest, member) for j in (*joints, *rigid_loops) if j.name not in tree]
     _check_cuts(reference.cuts, [c.joint.name for c in cuts], mechanism)
@@ -110,10 +109,16 @@ def reduce_graph(mechanism: Mechanism) -> Reduction:
 def _notes(mechanism: Mechanism, skipped: set[str]) -> Iterable[str]:
     for joint in mechanism.implicit_joints:
         if joint.name not in skipped:
-            yield f"{joint.second} is held by contacts or closures only: it got a passive free joint to the ground"
+            yield (
+                f"{joint.second} is held by contacts or closures only: it got a passive free joint "
+                "to the ground"
+            )
     for joint in mechanism.joints:
         if joint.name in skipped:
-            yield f"free joint {joint.name} between ground and reference member is unactuated: it constrains nothing"
+            yield (
+                f"free joint {joint.name} between ground and reference member is unactuated: "
+                "it constrains nothing"
+            )
 
 
 def _merges(mechanism: Mechanism, joint: Joint) -> bool:
@@ -162,7 +167,7 @@ def _between_roots(
 
 
 class _Forest:
-    """The spanning forest with its two roots: ordinary joints first, then kept closures, then declared cuts."""
+    """The spanning forest with its two roots: ordinary joints, then closures, then declared cuts."""
 
     def __init__(
         self, mechanism: Mechanism, joints: list[Joint], cluster: dict[str, str], ground: str, member: str
@@ -183,7 +188,9 @@ class _Forest:
             self._grow(member, stage)
         lost = [b.name for b in mechanism.bodies if cluster[b.name] not in self.root]
         if lost:
-            raise TopologyError(f"{', '.join(map(repr, lost))} hang from neither the ground nor the reference member")
+            raise TopologyError(
+                f"{', '.join(map(repr, lost))} hang from neither the ground nor the reference member"
+            )
 
     def _at_member(self, joint: Joint) -> bool:
         return self.member in (self.cluster[joint.first], self.cluster[joint.second])
@@ -212,9 +219,7 @@ def _cut(mechanism: Mechanism, joint: Joint, forest: _Forest, member: str) -> Cu
     root_second = forest.root[forest.cluster[joint.second]]
     role: Literal["member cut", "loop cut"] = "loop cut" if root_first == root_second else "member cut"
     limb_first = role == "loop cut" or root_first != member
-    return CutJoint(
-        joint, kind, role, joint.first if limb_first else joint.second, 1 if limb_first else -1
-    )
+    return CutJoint(joint, kind, role, joint.first if limb_first else joint.second, 1 if limb_first else -1)
 
 
 def _cut_kind(mechanism: Mechanism, joint: Joint, asked: Cut | None) -> Literal["kept", "contact"]:
@@ -224,11 +229,13 @@ def _cut_kind(mechanism: Mechanism, joint: Joint, asked: Cut | None) -> Literal[
     if asked.kind == "contact":
         if not possible:
             raise TopologyError(
-                f"joint {joint.name!r} cannot be cut as a contact: an axis of it is active, locked or coupled; "
-                "use kind: kept"
+                f"joint {joint.name!r} cannot be cut as a contact: an axis of it is active, locked or "
+                "coupled; use kind: kept"
             )
         if asked.at is not None and mechanism.type_of(joint).axes:
-            raise TopologyError(f"joint {joint.name!r}: a joint cut as a contact is cut at its centre; leave `at` out")
+            raise TopologyError(
+                f"joint {joint.name!r}: a joint cut as a contact is cut at its centre; leave `at` out"
+            )
     return asked.kind
 
 

@@ -125,9 +125,7 @@ def axis_linear(mechanism: Mechanism) -> dict[str, bool]:
     }
 
 
-def _coupling_residuals(
-    mechanism: Mechanism, q: Configuration, length: float
-) -> list[LoopResidual]:
+def _coupling_residuals(mechanism: Mechanism, q: Configuration, length: float) -> list[LoopResidual]:
     if not mechanism.couplings:
         return []
     values, home = axis_values(mechanism, q), axis_values(mechanism, mechanism.home)
@@ -140,7 +138,10 @@ def _coupling_residuals(
         in_metres = any(linear[axis] for axis in coupling.rates)
         result.append(
             LoopResidual(
-                coupling.name, "coupling", gap if in_metres else 0.0, 0.0 if in_metres else gap,
+                coupling.name,
+                "coupling",
+                gap if in_metres else 0.0,
+                0.0 if in_metres else gap,
                 gap if in_metres else gap * length,
             )
         )

@@ -97,13 +97,17 @@ def _check_axes(mechanism: Mechanism) -> None:
         _known(f"axis in motor {drive.name!r}", drive.drives, axes)
         _finite(f"coefficient of motor {drive.name!r}", drive.drives.values())
         if not any(drive.drives.values()):
-            raise ModelError(f"motor {drive.name!r} drives nothing: give at least one coefficient other than zero")
+            raise ModelError(
+                f"motor {drive.name!r} drives nothing: give at least one coefficient other than zero"
+            )
     drives = {drive.name for drive in mechanism.drives}
     _known("active axis or motor", mechanism.active, axes | drives)
     _known("locked axis", mechanism.lock, axes)
     both = [name for name in mechanism.active if name in set(mechanism.lock)]
     if both:
-        raise ModelError(f"{', '.join(both)} cannot be active and locked at once: drop it from one of the two")
+        raise ModelError(
+            f"{', '.join(both)} cannot be active and locked at once: drop it from one of the two"
+        )
     _unique("active axis", mechanism.active)
     targets = axes | drives | set(mechanism.joint)
     for motor, axis in mechanism.motors.items():
@@ -174,8 +178,9 @@ def implicit_free_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
         if not held:
             shown = ", ".join(repr(name) for name in group[:6])
             raise TopologyError(
-                f"{shown} {'is' if len(group) == 1 else 'are'} connected to nothing: no joint or contact leads "
-                "to the ground. Add one (a floating base has a `free` joint to the ground), or remove the body."
+                f"{shown} {'is' if len(group) == 1 else 'are'} connected to nothing: no joint or contact "
+                "leads to the ground. Add one (a floating base has a `free` joint to the ground), or "
+                "remove the body."
             )
         body = mechanism.body[member] if member in group and member is not None else mechanism.body[held[0]]
         result.append(_free_joint(mechanism, body.name, body.pose))

@@ -50,7 +50,9 @@ CONTACT_TYPES: dict[str, ContactType] = {
         ContactType("line", "line along x without friction", (2, 4), None, True, False),
         ContactType("line-friction", "line along x with friction", (0, 1, 2, 4, 5), None, True, True),
         ContactType("plane", "plane without friction", (2, 3, 4), None, True, False),
-        ContactType("complete", "plane with friction, complete constraint", tuple(range(6)), (0, 1, 2), False, True),
+        ContactType(
+            "complete", "plane with friction, complete constraint", tuple(range(6)), (0, 1, 2), False, True
+        ),
         ContactType("soft-finger", "point with friction and spin resistance", (0, 1, 2, 5), None, True, True),
     )
 }
@@ -84,9 +86,7 @@ def contact_components(name: str, space: Space) -> tuple[int, ...]:
         return kind.spatial
     if kind.planar is None:
         planar = [k.name for k in CONTACT_TYPES.values() if k.planar is not None]
-        raise TopologyError(
-            f"contact type {name!r} exists in space only; in the plane use {listing(planar)}"
-        )
+        raise TopologyError(f"contact type {name!r} exists in space only; in the plane use {listing(planar)}")
     return kind.planar
 
 

@@ -43,9 +43,7 @@ class Space:
 
 
 PLANAR = Space("planar", 2, 1, ("vx", "vy", "wz"), ("fx", "fy", "mz"))
-SPATIAL = Space(
-    "spatial", 3, 3, ("vx", "vy", "vz", "wx", "wy", "wz"), ("fx", "fy", "fz", "mx", "my", "mz")
-)
+SPATIAL = Space("spatial", 3, 3, ("vx", "vy", "vz", "wx", "wy", "wz"), ("fx", "fy", "fz", "mx", "my", "mz"))
 
 
 def space_named(name: str) -> Space:
