@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from vincula.analysis.ellipsoid import Ellipsoid
     from vincula.errors import (
         ClosureError,
         DuplicateNameError,
@@ -29,45 +30,119 @@ if TYPE_CHECKING:
         VinculaError,
         WeightError,
     )
+    from vincula.mechanism.configuration import Configuration
+    from vincula.mechanism.drawing import Contact, In, Reference
+    from vincula.mechanism.drawing import DrawnBody as Body
+    from vincula.mechanism.drawn_joints import (
+        Cylindrical,
+        Fixed,
+        Free,
+        PlanarJoint,
+        Prismatic,
+        Revolute,
+        Screw,
+        Spherical,
+        Universal,
+    )
+    from vincula.mechanism.mechanism import Mechanism
+    from vincula.mechanism.parts import ALL, Coupling, Cut, Drive, Limits
     from vincula.model import LinearModel
+    from vincula.weights import Weights, characteristic_length_weights
 
 __all__ = [
+    "ALL",
+    "Body",
     "ClosureError",
+    "Configuration",
+    "Contact",
+    "Coupling",
+    "Cut",
+    "Cylindrical",
+    "Drive",
     "DuplicateNameError",
+    "Ellipsoid",
     "FileError",
+    "Fixed",
+    "Free",
+    "In",
+    "Limits",
     "LinearModel",
+    "Mechanism",
     "MissingExtraError",
     "MissingReferenceError",
     "MixedUnitsError",
     "MixedUnitsWarning",
     "ModelError",
     "NonFiniteError",
+    "PlanarJoint",
+    "Prismatic",
     "RankAmbiguityWarning",
+    "Reference",
+    "Revolute",
+    "Screw",
     "ShapeError",
+    "Spherical",
     "TopologyError",
+    "Universal",
     "UnknownNameError",
     "UnsupportedFeatureError",
     "VinculaError",
     "WeightError",
+    "Weights",
+    "characteristic_length_weights",
 ]
 
-_MODULES = {
-    "vincula.errors": (
-        "ClosureError DuplicateNameError FileError MissingExtraError MissingReferenceError MixedUnitsError "
-        "MixedUnitsWarning ModelError NonFiniteError RankAmbiguityWarning ShapeError TopologyError "
-        "UnknownNameError UnsupportedFeatureError VinculaError WeightError"
-    ),
-    "vincula.model": "LinearModel",
+_HOME = {
+    "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
+    "ClosureError": "vincula.errors:ClosureError",
+    "DuplicateNameError": "vincula.errors:DuplicateNameError",
+    "FileError": "vincula.errors:FileError",
+    "MissingExtraError": "vincula.errors:MissingExtraError",
+    "MissingReferenceError": "vincula.errors:MissingReferenceError",
+    "MixedUnitsError": "vincula.errors:MixedUnitsError",
+    "MixedUnitsWarning": "vincula.errors:MixedUnitsWarning",
+    "ModelError": "vincula.errors:ModelError",
+    "NonFiniteError": "vincula.errors:NonFiniteError",
+    "RankAmbiguityWarning": "vincula.errors:RankAmbiguityWarning",
+    "ShapeError": "vincula.errors:ShapeError",
+    "TopologyError": "vincula.errors:TopologyError",
+    "UnknownNameError": "vincula.errors:UnknownNameError",
+    "UnsupportedFeatureError": "vincula.errors:UnsupportedFeatureError",
+    "VinculaError": "vincula.errors:VinculaError",
+    "WeightError": "vincula.errors:WeightError",
+    "Configuration": "vincula.mechanism.configuration:Configuration",
+    "Body": "vincula.mechanism.drawing:DrawnBody",
+    "Contact": "vincula.mechanism.drawing:Contact",
+    "In": "vincula.mechanism.drawing:In",
+    "Reference": "vincula.mechanism.drawing:Reference",
+    "Cylindrical": "vincula.mechanism.drawn_joints:Cylindrical",
+    "Fixed": "vincula.mechanism.drawn_joints:Fixed",
+    "Free": "vincula.mechanism.drawn_joints:Free",
+    "PlanarJoint": "vincula.mechanism.drawn_joints:PlanarJoint",
+    "Prismatic": "vincula.mechanism.drawn_joints:Prismatic",
+    "Revolute": "vincula.mechanism.drawn_joints:Revolute",
+    "Screw": "vincula.mechanism.drawn_joints:Screw",
+    "Spherical": "vincula.mechanism.drawn_joints:Spherical",
+    "Universal": "vincula.mechanism.drawn_joints:Universal",
+    "Mechanism": "vincula.mechanism.mechanism:Mechanism",
+    "ALL": "vincula.mechanism.parts:ALL",
+    "Coupling": "vincula.mechanism.parts:Coupling",
+    "Cut": "vincula.mechanism.parts:Cut",
+    "Drive": "vincula.mechanism.parts:Drive",
+    "Limits": "vincula.mechanism.parts:Limits",
+    "LinearModel": "vincula.model:LinearModel",
+    "Weights": "vincula.weights:Weights",
+    "characteristic_length_weights": "vincula.weights:characteristic_length_weights",
 }
-_HOME = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> Any:
     """The public name, imported from its module now and kept."""
-    module = _HOME.get(name)
-    if module is None:
+    home = _HOME.get(name)
+    if home is None:
         raise AttributeError(f"module 'vincula' has no attribute {name!r}")
-    value = getattr(import_module(module), name)
+    module, _, attribute = home.partition(":")
+    value = getattr(import_module(module), attribute)
     globals()[name] = value
     return value
 

@@ -17,6 +17,7 @@ FLOORS = {
     "mechanism": 3,
     "analysis": 3,
     "kernels": 3,
+    "labels": 2,
     "model": 2,
     "weights": 2,
     "numerics": 1,
