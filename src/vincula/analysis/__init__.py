@@ -1,1 +1,1 @@
-"""Analyses of a linear model: mobility, equilibrium, manipulability, diagnosis."""
+"""What a linear model says: motions, forces, ellipsoids, and all of it in words."""

@@ -200,6 +200,10 @@ class RankLedger:
             )
         return self._decisions[name]
 
+    def decided(self, name: MatrixName) -> bool:
+        """Whether this rank was asked for already."""
+        return name in self._decisions
+
     def rank(self, name: MatrixName) -> int:
         """The decided rank of one of the eight matrices."""
         return self.decision(name).rank
@@ -216,9 +220,7 @@ class RankLedger:
         parts = {"digits": self.digits, "tolerance": self.tolerance}
         rho = self.residual
         if rho > 0.0:
-            before = decide_rank(
-                self._all, scale=self.scale, uncertainty=parts, values=self._values_of_all
-            )
+            before = decide_rank(self._all, scale=self.scale, uncertainty=parts, values=self._values_of_all)
             sigma = before.kept
             parts["closure"] = rho / sigma if rho < 0.5 * sigma * sigma else (2.0 * rho) ** 0.5
         return parts
@@ -259,8 +261,7 @@ class RankLedger:
     @property
     def doubtful(self) -> tuple[RankDecision, ...]:
         """The decisions made so far that are doubtful."""
-        return tuple(self._decisions[n] for n in MATRIX_NAMES if n in self._decisions
-                     and self._decisions[n].status == "doubtful")  # fmt: skip
+        return tuple(d for d in self._decisions.values() if d.status == "doubtful")
 
     @property
     def status(self) -> Status:

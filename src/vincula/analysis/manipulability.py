@@ -1,0 +1,248 @@
+"""The five ellipsoids.  Source: eqs. (8)-(13), (20)-(24); theory page, sections 4 and 5."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vincula.analysis.doubt import warn_of_doubt, warn_of_mixed_units
+from vincula.analysis.ellipsoid import Class, Convention, Ellipsoid, Kind, Viewpoint
+from vincula.analysis.relation import Relation, force_relation, internal_relation, kinematic_relation
+from vincula.analysis.spectrum import Spectrum, spectrum
+from vincula.analysis.vectorset import VectorSet
+from vincula.arrays import Matrix, Vector, frozen
+from vincula.errors import ModelError
+from vincula.model import LinearModel
+from vincula.numerics.metric import Metric
+from vincula.weights import UNIT, Quantity, Weights
+
+
+def kinematic_ellipsoid(
+    model: LinearModel,
+    weights: Weights | None = None,
+    *,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
+) -> Ellipsoid:
+    """Twists of the member per unit of motor rate: eqs. (8), (11)-(13).
+
+    Redundancy is used as well as possible, indeterminacy taken at its worst.  Efficiencies are
+    infinite for motions with all motors locked, zero for motor motions that leave the member at rest.
+
+    Args:
+        model: The mechanism at one configuration.
+        weights: W_u and W_q; the model's own, else the identity in m, rad, when not given.
+        viewpoint: efficiency (speed per motor speed) or accuracy (error per motor error).
+        convention: Makes no difference here.
+
+    Warns:
+        RankAmbiguityWarning: The counts depend on singular values within the uncertainty.
+        MixedUnitsWarning: Metres and radians are added with weights that nobody chose.
+    """
+    return _ellipsoid(model, weights, _KINEMATIC, viewpoint, convention)
+
+
+def active_force_ellipsoid(
+    model: LinearModel,
+    weights: Weights | None = None,
+    *,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
+) -> Ellipsoid:
+    """Wrenches that the motors push through the member, per unit of torque: eq. (20).
+
+    Wrenches are minimised over structural ones, the torque of squeezing counts: internal torques
+    appear with efficiency zero.  Arguments and warnings as for `kinematic_ellipsoid`, with W_w and
+    W_tau; `convention="printed"` gives the numbers printed in the paper (theory page, section 5).
+    """
+    if convention == "printed":
+        return _printed(model, weights, "active force", viewpoint)
+    return _ellipsoid(model, weights, _ACTIVE, viewpoint, convention)
+
+
+def passive_force_ellipsoid(
+    model: LinearModel,
+    weights: Weights | None = None,
+    *,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
+) -> Ellipsoid:
+    """Wrenches that the mechanism resists, per unit of torque: eq. (21).
+
+    Torques are minimised over internal ones; structural wrenches cost no torque: efficiency
+    infinity, the set is a cylinder along them.  Arguments and warnings as for
+    `active_force_ellipsoid`.
+    """
+    if convention == "printed":
+        return _printed(model, weights, "passive force", viewpoint)
+    return _ellipsoid(model, weights, _PASSIVE, viewpoint, convention)
+
+
+def internal_force_ellipsoid(
+    model: LinearModel,
+    weights: Weights | None = None,
+    *,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
+) -> Ellipsoid:
+    """Contact forces of squeezing (no net wrench) per unit of torque: eqs. (22)-(23).
+
+    Forces carried without any torque (static indeterminacy) are infinite, the finite ones minimised
+    over them.  Depends on where the graph was cut (see `model.cuts`).  Arguments and warnings as for
+    `kinematic_ellipsoid`, with W_f and W_tau.
+    """
+    return _ellipsoid(model, weights, _INTERNAL, viewpoint, convention)
+
+
+def dual_force_ellipsoid(
+    model: LinearModel,
+    weights: Weights | None = None,
+    *,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
+) -> Ellipsoid:
+    """The force problem dual to the kinematic one: eq. (24).
+
+    Optimised over internal torques, worst case over structural wrenches.  With W_w = W_u^-1 and W_tau = W_q^-1 its efficiencies are the reciprocals of the finite kinematic
+    ones.  Arguments and warnings as for `kinematic_ellipsoid`, with W_w and W_tau.
+    """
+    return _ellipsoid(model, weights, _DUAL, viewpoint, convention)
+
+
+@dataclass(frozen=True, slots=True)
+class _Recipe:
+    """What one ellipsoid is made of, and which classes it lists (house page)."""
+
+    kind: Kind
+    task: Quantity
+    motor: Quantity
+    listed: tuple[Class, ...]
+
+
+_KINEMATIC = _Recipe("kinematic", "twist", "rate", ("infinite", "finite", "zero", "undefined"))
+_ACTIVE = _Recipe("active force", "wrench", "torque", ("finite", "zero", "undefined"))
+_PASSIVE = _Recipe("passive force", "wrench", "torque", ("infinite", "finite", "undefined"))
+_INTERNAL = _Recipe("internal force", "contact_force", "torque", ("infinite", "finite", "undefined"))
+_DUAL = _Recipe("dual force", "wrench", "torque", ("finite", "undefined"))
+
+
+def _ellipsoid(
+    model: LinearModel,
+    weights: Weights | None,
+    recipe: _Recipe,
+    viewpoint: Viewpoint,
+    convention: Convention,
+) -> Ellipsoid:
+    used = resolved_weights(model, weights)
+    task, motor = used.metric(recipe.task, model), used.metric(recipe.motor, model)
+    relation = _relation(model, recipe.task)
+    found = spectrum(relation, task, motor)
+    warn_of_doubt(model)
+    warn_of_mixed_units(model, used, recipe.task)
+    return assembled(model, recipe.kind, recipe.listed, found, task, motor, viewpoint, convention)
+
+
+def resolved_weights(model: LinearModel, weights: Weights | None) -> Weights:
+    """The weights given, else those of the model, else the identity that nobody chose."""
+    return weights or model.weights or UNIT
+
+
+def _relation(model: LinearModel, task: Quantity) -> Relation:
+    if task == "twist":
+        return kinematic_relation(model)
+    return force_relation(model) if task == "wrench" else internal_relation(model)
+
+
+def _printed(model: LinearModel, weights: Weights | None, kind: Kind, viewpoint: Viewpoint) -> Ellipsoid:
+    from vincula.analysis.printed import printed_spectrum
+
+    used = resolved_weights(model, weights)
+    task, motor = used.metric("wrench", model), used.metric("torque", model)
+    found = printed_spectrum(model, kind, task, motor)
+    warn_of_doubt(model)
+    warn_of_mixed_units(model, used, "wrench")
+    listed: tuple[Class, ...] = ("finite",) if kind == "active force" else ("infinite", "finite")
+    return assembled(model, kind, listed, found, task, motor, viewpoint, "printed")
+
+
+def assembled(
+    model: LinearModel,
+    kind: Kind,
+    listed: tuple[Class, ...],
+    found: Spectrum,
+    task: Metric,
+    motor: Metric,
+    viewpoint: Viewpoint,
+    convention: Convention,
+) -> Ellipsoid:
+    """An ellipsoid with the listed classes of a spectrum."""
+    _refuse_unknown(viewpoint, ("efficiency", "accuracy"), "viewpoint")
+    _refuse_unknown(convention, ("invariant", "printed"), "convention")
+    efficiencies: list[float] = []
+    classes: list[Class] = []
+    task_side: list[Vector | None] = []
+    motor_side: list[Vector | None] = []
+    groups: tuple[tuple[Class, int, Matrix | None, Matrix | None], ...] = (
+        ("infinite", found.infinite.shape[1], found.infinite, None),
+        ("finite", len(found.ratios), found.task, found.motor),
+        ("zero", found.zero.shape[1], None, found.zero),
+        ("undefined", found.undefined, None, None),
+    )
+    values = {"infinite": np.inf, "zero": 0.0, "undefined": np.nan}
+    for name, count, task_columns, motor_columns in groups:
+        if name not in listed:
+            continue
+        classes += [name] * count
+        efficiencies += [float(r) ** 2 for r in found.ratios] if name == "finite" else [values[name]] * count
+        task_side += _columns(task_columns, count)
+        motor_side += _columns(motor_columns, count)
+    components, units = _components(model, kind)
+    lines = found.infinite if "infinite" in listed else found.infinite[:, :0]
+    axes, doubt = found.task * found.ratios, model.ledger.subspace_doubt
+    return Ellipsoid(
+        kind=kind,
+        efficiencies=frozen(np.array(efficiencies)),
+        classes=tuple(classes),
+        task_directions=tuple(task_side),
+        motor_directions=tuple(motor_side),
+        components=components,
+        units=units,
+        motors=tuple(column.name for column in model.motors),
+        motor_units=motor_units(model, "rate" if kind == "kinematic" else "torque"),
+        task_weight=task,
+        motor_weight=motor,
+        set=VectorSet(components, units, axes, _unit(lines), doubt),
+        viewpoint=viewpoint,
+        convention=convention,
+    )
+
+
+def motor_units(model: LinearModel, quantity: Quantity) -> tuple[str, ...]:
+    """Units of the active rates or of the motor torques."""
+    linear, angular = ("m/s", "rad/s") if quantity == "rate" else ("N", "N m")
+    return tuple(linear if column.linear else angular for column in model.motors)
+
+
+def _components(model: LinearModel, kind: Kind) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    if kind == "kinematic":
+        return model.twist_components, model.twist_units
+    if kind == "internal force":
+        names = tuple(row.name for row in model.rows)
+        return names, tuple("N" if row.linear else "N m" for row in model.rows)
+    return model.wrench_components, model.wrench_units
+
+
+def _columns(columns: Matrix | None, count: int) -> list[Vector | None]:
+    if columns is None:
+        return [None] * count
+    return [frozen(np.ascontiguousarray(columns[:, i])) for i in range(count)]
+
+
+def _unit(columns: Matrix) -> Matrix:
+    return columns / np.linalg.norm(columns, axis=0) if columns.shape[1] else columns
+
+
+def _refuse_unknown(value: str, known: tuple[str, ...], what: str) -> None:
+    if value not in known:
+        raise ModelError(f"{what} is {value!r}: choose {' or '.join(known)}")

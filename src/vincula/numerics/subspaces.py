@@ -1,0 +1,106 @@
+"""Bases that belong to decided ranks: kernels, left kernels, complements; and their transport.
+
+Every basis here has its dimension from the rank ledger: nothing in this file looks at the size of a
+singular value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vincula.arrays import Matrix
+from vincula.numerics.lapack import qr_full, svd
+
+if TYPE_CHECKING:
+    from vincula.numerics.rank import MatrixName, RankLedger
+
+
+def kernel(matrix: Matrix, rank: int) -> Matrix:
+    """Orthonormal basis of the kernel, n x (n - rank)."""
+    return svd(matrix)[2][:, rank:]
+
+
+def left_kernel(matrix: Matrix, rank: int) -> Matrix:
+    """Orthonormal basis of the left kernel, m x (m - rank); QR suffices at full column rank."""
+    if rank == matrix.shape[1]:
+        return qr_full(matrix)[:, rank:]
+    return svd(matrix)[0][:, rank:]
+
+
+def complement(space: Matrix, inside: Matrix, count: int) -> Matrix:
+    """The `count` directions of `space` that lie farthest from `inside`.
+
+    Args:
+        space: n x k orthonormal basis.
+        inside: n x j orthonormal basis of the subspace to stay away from.
+        count: Dimension wanted, from the ledger.
+    """
+    apart = space - inside @ (inside.T @ space)
+    return space @ svd(apart)[2][:, :count]
+
+
+def span(columns: Matrix, rank: int) -> Matrix:
+    """Orthonormal basis of the range of `columns`, n x rank."""
+    return svd(columns)[0][:, :rank]
+
+
+def transported(basis: Matrix, previous: Matrix) -> Matrix:
+    """The same subspace as `basis`, in the basis nearest to `previous` (orthogonal Procrustes).
+
+    Along a path raw singular vectors jump; transported ones turn no more than the subspace does.
+
+    Args:
+        basis: n x k orthonormal basis here.
+        previous: n x k orthonormal basis one step before.
+    """
+    left, _, right = svd(basis.T @ previous)
+    return basis @ (left @ right.T)
+
+
+def projector_distance(first: Matrix, second: Matrix) -> float:
+    """Sine of the largest angle between two subspaces (orthonormal bases); 1 for different dimensions."""
+    if first.shape[1] != second.shape[1]:
+        return 1.0
+    apart = second - first @ (first.T @ second)
+    return float(np.linalg.norm(apart, 2)) if apart.size else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Subspaces:
+    """Kernels and ranges of the scaled matrices of one model, computed on demand and only once.
+
+    Coordinates are scaled; columns are ordered (q_a, q_p, u), and the member part is -G^T as in (1).
+    """
+
+    ledger: RankLedger
+    _kernels: dict[str, Matrix] = field(default_factory=dict, repr=False)
+    _left_kernels: dict[str, Matrix] = field(default_factory=dict, repr=False)
+
+    def kernel(self, name: MatrixName) -> Matrix:
+        """Orthonormal kernel of one of the eight matrices."""
+        if name not in self._kernels:
+            self._kernels[name] = kernel(self.ledger.matrix(name), self.ledger.rank(name))
+        return self._kernels[name]
+
+    def left_kernel(self, name: MatrixName) -> Matrix:
+        """Orthonormal left kernel of one of the eight matrices."""
+        if name not in self._left_kernels:
+            self._left_kernels[name] = left_kernel(self.ledger.matrix(name), self.ledger.rank(name))
+        return self._left_kernels[name]
+
+    @cached_property
+    def motions_and_equilibria(self) -> tuple[Matrix, Matrix]:
+        """Orthonormal bases of M = {(q_a, u)} and of its complement F = {(tau, w)}: theory page, 4.
+
+        Both come from one orthogonal matrix, so that tau.q_a + w.u = 0 to rounding.
+        """
+        ledger = self.ledger
+        z = self.left_kernel("passive")
+        reduced = z.T @ np.hstack([ledger.matrix("active"), ledger.matrix("member")])
+        rank = ledger.rank("all") - ledger.rank("passive")
+        right = svd(reduced)[2]
+        return right[:, rank:], right[:, :rank]
