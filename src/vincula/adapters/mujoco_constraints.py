@@ -62,8 +62,8 @@ class Constraints:
             reader = readers.get(int(model.eq_type[index]))
             if reader is None:
                 raise UnsupportedFeatureError(
-                    f"equality {kind} {self._label(index)}: this kind of loop is understood but not supported; "
-                    "supported are connect, weld, joint, and tendon on fixed tendons"
+                    f"equality {kind} {self._label(index)} is active; this kind of loop is not supported, "
+                    "only connect, weld, joint, and tendon on fixed tendons are"
                 )
             reader(index)
             coupled = f"couples {self._label(index)}"
@@ -128,8 +128,8 @@ class Constraints:
             terms = fixed_tendon(self._model, tendon) if tendon >= 0 else {}
             if terms is None:
                 raise UnsupportedFeatureError(
-                    f"equality tendon {self._label(index)}: tendon {self._names.tendons[tendon]!r} runs through "
-                    "space, so its length is no sum of joint values; supported are fixed tendons"
+                    f"equality tendon {self._label(index)}: tendon {self._names.tendons[tendon]!r} runs "
+                    "through space, so its length is no sum of joint values; supported are fixed tendons"
                 )
             sides.append(terms)
         self._couple(index, sides[0], sides[1])
@@ -137,6 +137,7 @@ class Constraints:
     def _couple(self, index: int, rates: dict[int, float], driver: dict[int, float]) -> None:
         """MuJoCo measures both sides from their values at `qpos0`."""
         model, names = self._model, self._names
+        home = {names.joints[j]: joint_values(model, j, model.qpos0)[0] for j in (*rates, *driver)}
         polynomial = [float(c) for c in model.eq_data[index][:5]]
         name = self._names.equalities[index] or f"coupling:{self._label(index)}"
         self._coupling_names.add(name := unused(name, self._coupling_names))
@@ -146,7 +147,7 @@ class Constraints:
                 rates={names.joints[j]: c for j, c in rates.items()},
                 driver={names.joints[j]: c for j, c in driver.items()},
                 polynomial=tuple(polynomial) if driver else (polynomial[0],),
-                references={names.joints[j]: joint_values(model, j, model.qpos0)[0] for j in (*rates, *driver)},
+                references=home,
             )
         )
 

@@ -70,7 +70,9 @@ def configuration_of(model: Any, names: ModelNames, qpos: Any) -> dict[str, tupl
 
 
 def _keyframes(model: Any, names: ModelNames) -> dict[str, dict[str, tuple[float, ...]]]:
-    return {key: configuration_of(model, names, model.key_qpos[index]) for index, key in enumerate(names.keys)}
+    return {
+        key: configuration_of(model, names, model.key_qpos[index]) for index, key in enumerate(names.keys)
+    }
 
 
 def _record(model: Any, names: ModelNames, tree: Tree, report: LoadReport) -> None:

@@ -143,7 +143,8 @@ def _efforts(model: Any) -> dict[int, float]:
             continue
         limit = math.inf
         if model.actuator_forcelimited[actuator]:
-            limit = abs(float(model.actuator_gear[actuator][0])) * _largest(model.actuator_forcerange[actuator])
+            gear = abs(float(model.actuator_gear[actuator][0]))
+            limit = gear * _largest(model.actuator_forcerange[actuator])
         joint = int(model.actuator_trnid[actuator][0])
         by_motor[joint] = by_motor.get(joint, 0.0) + limit
     for joint in range(model.njnt):

@@ -76,7 +76,7 @@ class Motors:
         terms = {axis: g for axis, g in zip(axes, gear, strict=True) if g != 0.0}
         turns = any(axis.rsplit(".", 1)[1] in ("x", "y", "z", "wx", "wy", "wz") for axis in terms)
         if in_parent and turns:
-            reason = f"it turns {self._names.joints[joint]} about an axis of the parent, which is no joint axis"
+            reason = f"it turns {self._names.joints[joint]} about an axis of the parent: no joint axis"
             self._report.ignored("motor", name, reason)
         elif not terms:
             self._report.ignored("motor", name, "its gear is zero: it drives nothing")
@@ -88,7 +88,7 @@ class Motors:
 
     def _on_tendon(self, name: str, tendon: int) -> None:
         if tendon in self._drive_of_tendon:
-            self._use(name, self._drive_of_tendon[tendon], "; the same motor as an earlier actuator")
+            self._use(name, self._drive_of_tendon[tendon], "")
             return
         terms = fixed_tendon(self._model, tendon)
         if not terms:
@@ -96,7 +96,8 @@ class Motors:
             self._report.ignored("motor", name, reason)
             return
         axes = {self._names.joints[joint]: c for joint, c in terms.items()}
-        self._drive_of_tendon[tendon] = self._drive(name, axes, f"through tendon {self._names.tendons[tendon]}")
+        how = f"through tendon {self._names.tendons[tendon]}"
+        self._drive_of_tendon[tendon] = self._drive(name, axes, how)
 
     def _drive(self, name: str, terms: Mapping[str, float], how: str) -> str:
         drive = unused(name, self._axes | {other.name for other in self.drives})
@@ -107,6 +108,7 @@ class Motors:
         return drive
 
     def _use(self, name: str, axis: str, remark: str) -> None:
-        again = axis in self.axis_of.values() and not remark
+        if axis in self.axis_of.values():
+            remark += "; one motor with another actuator"
         self.axis_of[name] = axis
-        self._report.used("motor", name, f"drives {axis}{'; one motor with another actuator' if again else remark}")
+        self._report.used("motor", name, f"drives {axis}{remark}")

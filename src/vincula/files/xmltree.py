@@ -1,0 +1,174 @@
+"""XML to a plain tree that knows where every element stands; the limits hold while it is read.
+
+The document goes to expat in one piece.  Document types (and with them entities, and everything
+external) are refused at their first character.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final, NoReturn
+from xml.parsers import expat
+
+from vincula.errors import FileError
+from vincula.files.limits import DEFAULT_LIMITS, Deadline, Limits
+from vincula.files.problems import Place, Problems, shown
+from vincula.files.source import Source
+
+_CHECK_EVERY: Final = 1024
+_LONGEST_PATH: Final = 160
+
+
+@dataclass(slots=True, eq=False)
+class Element:
+    """One element.
+
+    Attributes:
+        tag: Its tag.
+        attributes: Its attributes, in the order of the file.
+        file: The file that it stands in, as shown to the user.
+        line: Line of its start tag, from 1.
+        column: Column of its start tag in characters, from 1.
+        parent: The element around it; None for the root.
+        children: Elements inside it.
+        text: Text directly inside it, blanks at the ends removed.
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    file: str
+    line: int
+    column: int
+    parent: Element | None = None
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+    @property
+    def name(self) -> str:
+        """The `name` attribute, empty when there is none."""
+        return self.attributes.get("name", "")
+
+    @property
+    def path(self) -> str:
+        """`robot/joint[@name='elbow']/axis`; the middle of a long path is left out."""
+        steps: list[str] = []
+        element: Element | None = self
+        while element is not None:
+            name = f"[@name={shown(element.name, 40)}]" if element.name else ""
+            steps.append(f"{element.tag}{name}")
+            element = element.parent
+        steps.reverse()
+        while len(steps) > 3 and sum(map(len, steps)) + len(steps) > _LONGEST_PATH:
+            steps[1:3] = ["..."]
+        return "/".join(steps)
+
+    @property
+    def place(self) -> Place:
+        """Where it stands, for messages."""
+        return Place(self.file, self.line, self.column, self.path)
+
+    def walk(self) -> Iterator[Element]:
+        """The element and everything inside it, in the order of the file."""
+        waiting = [self]
+        while waiting:
+            element = waiting.pop()
+            yield element
+            waiting.extend(reversed(element.children))
+
+    def find_all(self, tag: str) -> Iterator[Element]:
+        """Its children with a tag."""
+        return (child for child in self.children if child.tag == tag)
+
+
+def parse_xml(source: Source, limits: Limits = DEFAULT_LIMITS) -> Element:
+    """The root element of an XML document.
+
+    Raises:
+        FileError: Not well-formed, a document type, or over a limit; tells the place.
+    """
+    source.refuse_larger_than(limits.xml_bytes, "XML file")
+    return _TreeBuilder(source, limits).build()
+
+
+class _TreeBuilder:
+    """Expat's handlers."""
+
+    def __init__(self, source: Source, limits: Limits) -> None:
+        self._source, self._limits = source, limits
+        self._deadline = Deadline(source.file, limits)
+        self._parser = expat.ParserCreate(encoding="utf-8")
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._characters
+        self._parser.StartDoctypeDeclHandler = self._doctype
+        self._parser.buffer_text = True
+        self._root: Element | None = None
+        self._open: list[Element] = []
+        self._texts: list[list[str]] = []
+        self._count = 0
+
+    def build(self) -> Element:
+        try:
+            self._parser.Parse(self._source.text.encode("utf-8"), True)
+        except expat.ExpatError as error:
+            self._refuse(f"{expat.ErrorString(error.code)}{self._unclosed()}", error.lineno, error.offset + 1)
+        if self._root is None:
+            self._refuse("there is no element", 1, 1)
+        return self._root
+
+    def _unclosed(self) -> str:
+        if not self._open:
+            return ""
+        last = self._open[-1]
+        return f"; <{last.tag}> of line {last.line} is open"
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._count += 1
+        limits = self._limits
+        line, column = self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1
+        if self._count % _CHECK_EVERY == 0:
+            self._deadline.check(line, column)
+        if self._count > limits.nodes:
+            self._refuse(f"more than {limits.nodes} elements", line, column)
+        if len(self._open) >= limits.depth:
+            self._refuse(f"elements are nested more than {limits.depth} deep", line, column)
+        if len(attributes) > limits.attributes:
+            self._refuse(f"more than {limits.attributes} attributes at one element", line, column)
+        for name, value in attributes.items():
+            if len(value) > limits.attribute_characters:
+                most = limits.attribute_characters
+                self._refuse(f"attribute {shown(name)} has more than {most} characters", line, column)
+        parent = self._open[-1] if self._open else None
+        element = Element(tag, attributes, self._source.file, line, column, parent)
+        if parent is None:
+            self._root = element
+        else:
+            parent.children.append(element)
+        self._open.append(element)
+        self._texts.append([])
+
+    def _end(self, _tag: str) -> None:
+        self._open.pop().text = "".join(self._texts.pop()).strip()
+
+    def _characters(self, data: str) -> None:
+        if self._texts:
+            self._texts[-1].append(data)
+
+    def _doctype(self, *_: object) -> None:
+        line, column = self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1
+        self._refuse("document types and entities are not read; remove <!DOCTYPE ...>", line, column)
+
+    def _refuse(self, message: str, line: int, column: int) -> NoReturn:
+        raise FileError(f"{Place(self._source.file, line, column).text()}: {message}")
+
+
+def refuse_element(element: Element, message: str) -> NoReturn:
+    """Refuse one element at once.
+
+    Raises:
+        FileError: Always.
+    """
+    problems = Problems(element.file)
+    problems.add(element.place, message)
+    problems.refuse()
