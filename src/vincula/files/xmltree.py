@@ -13,7 +13,7 @@ from xml.parsers import expat
 
 from vincula.errors import FileError
 from vincula.files.limits import DEFAULT_LIMITS, Deadline, Limits
-from vincula.files.problems import Place, Problems, shown
+from vincula.files.problems import Place, shown
 from vincula.files.source import Source
 
 _CHECK_EVERY: Final = 1024
@@ -169,6 +169,4 @@ def refuse_element(element: Element, message: str) -> NoReturn:
     Raises:
         FileError: Always.
     """
-    problems = Problems(element.file)
-    problems.add(element.place, message)
-    problems.refuse()
+    raise FileError(f"{element.place.text()}: {message}")

@@ -1,0 +1,36 @@
+"""How exactly a typed number is known: half a unit of its last digit.
+
+Only numbers with at least four digits after the point count: shorter ones are taken as meant
+exactly, and what is typed with sixteen digits is exact for all that matters.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+FEWEST_DECIMALS: Final = 4
+"""Numbers with fewer digits after the point are exact."""
+
+_NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?")
+
+
+def is_number(text: str) -> bool:
+    """Whether a text is a decimal number as files write it (`1e-5`, not `0x10`, `1_000` or `nan`)."""
+    return _NUMBER.fullmatch(text) is not None
+
+
+def half_unit(text: str) -> float:
+    """Half a unit of the last digit of a typed number, in its own unit; 0 where it counts as exact.
+
+    Args:
+        text: The number as it was typed; `1.5708` gives 5e-5, `1.2345e-3` gives 5e-8, `1.57` gives 0.
+    """
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        return 0.0
+    decimals = len(match[1] or match[2] or "")
+    if decimals < FEWEST_DECIMALS:
+        return 0.0
+    power = int(match[3] or 0) - decimals
+    return 0.5 * 10.0**power if -300 < power < 300 else 0.0

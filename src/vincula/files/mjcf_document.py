@@ -1,0 +1,136 @@
+"""An MJCF file with everything it includes, as one tree of elements; nothing else is opened.
+
+Included files must lie in the model's own folder or an allowed one, after links are resolved.  Files
+of attached models (`asset/model`) are read by the same rules, each as a document of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from vincula.errors import FileError
+from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.problems import shown
+from vincula.files.source import Source, decode, read_bytes, shown_path
+from vincula.files.xmltree import Element, parse_xml, refuse_element
+
+
+@dataclass(slots=True)
+class Document:
+    """One MJCF file, its includes expanded.
+
+    Attributes:
+        root: The `mujoco` element.
+        file: The file as shown to the user.
+        models: Documents of attached models by the `asset/model` element that names them.
+        includes: Files that were included, as shown to the user.
+    """
+
+    root: Element
+    file: str
+    models: list[tuple[Element, Document]] = field(default_factory=list)
+    includes: list[str] = field(default_factory=list)
+
+    def all_documents(self) -> list[Document]:
+        """The document and those of its attached models, inner ones too."""
+        found = [self]
+        for _, model in self.models:
+            found.extend(model.all_documents())
+        return found
+
+
+def read_document(
+    source: Source, limits: Limits = DEFAULT_LIMITS, roots: Sequence[str | Path] = ()
+) -> Document:
+    """The document of an MJCF file.
+
+    Args:
+        source: The text of the file.
+        limits: Limits on files, elements and includes.
+        roots: Further folders that included files may lie in.
+
+    Raises:
+        FileError: The file or an included one cannot be read, or lies outside the allowed folders.
+    """
+    folder = source.path.parent if source.path is not None else Path()
+    return _Reader(folder, limits, [folder, *map(Path, roots)]).read(source, ())
+
+
+class _Reader:
+    """Opens files and counts them against the limits."""
+
+    def __init__(self, folder: Path, limits: Limits, roots: Sequence[Path]) -> None:
+        self._folder, self._limits = folder, limits
+        self._roots = [root.resolve() for root in roots]
+        self._opened = 0
+        self._elements = 0
+
+    def read(self, source: Source, chain: tuple[Path, ...]) -> Document:
+        root = parse_xml(source, self._limits)
+        if root.tag != "mujoco":
+            refuse_element(root, f"got <{root.tag[:40]}>, expected <mujoco>, the root of an MJCF file")
+        document = Document(root, source.file)
+        if source.path is not None:
+            chain = (*chain, source.path.resolve())
+        self._expand(root, source, document, set(chain), 1)
+        for element in list(root.walk()):
+            if element.tag == "model" and element.parent is not None and element.parent.tag == "asset":
+                child, path = self._open(element, source)
+                if path in chain:
+                    refuse_element(element, f"the model {shown(element.attributes['file'])} contains itself")
+                document.models.append((element, self.read(child, (*chain, path))))
+        return document
+
+    def _expand(
+        self, element: Element, source: Source, document: Document, seen: set[Path], depth: int
+    ) -> None:
+        """Put the children of included files in the place of the include elements."""
+        self._elements += 1
+        if depth > self._limits.depth:
+            refuse_element(element, f"elements are nested more than {self._limits.depth} deep")
+        if self._elements > self._limits.nodes:
+            refuse_element(element, f"more than {self._limits.nodes} elements in all files together")
+        children: list[Element] = []
+        for child in element.children:
+            if child.tag != "include":
+                self._expand(child, source, document, seen, depth + 1)
+                children.append(child)
+                continue
+            included, path = self._open(child, source)
+            if path in seen:
+                refuse_element(child, f"{shown(included.file)} is included twice: a file may be included once")
+            seen.add(path)
+            document.includes.append(included.file)
+            holder = parse_xml(included, self._limits)
+            if not holder.children:
+                refuse_element(child, f"{shown(child.attributes['file'])} holds no element")
+            self._expand(holder, included, document, seen, depth)
+            for inner in holder.children:
+                inner.parent = element
+            children.extend(holder.children)
+        element.children = children
+
+    def _open(self, element: Element, source: Source) -> tuple[Source, Path]:
+        """The file that an element names, looked for in the model's folder, then beside the file."""
+        named = element.attributes.get("file", "").replace("\\", "/")
+        if not named:
+            refuse_element(element, "the attribute 'file' is missing")
+        if "://" in named:
+            refuse_element(element, f"got {shown(named)}, expected the path of a file beside the model")
+        self._opened += 1
+        if self._opened > self._limits.includes:
+            refuse_element(element, f"more than {self._limits.includes} included files")
+        beside = source.path.parent if source.path is not None else self._folder
+        candidates = dict.fromkeys([self._folder / named, beside / named])
+        path = next((c for c in candidates if c.exists()), self._folder / named)
+        resolved = path.resolve()
+        if not any(resolved.is_relative_to(root) for root in self._roots):
+            refuse_element(element, f"{shown(named)} lies outside the folder of the model: it is not opened")
+        try:
+            data = read_bytes(resolved, self._limits.xml_bytes)
+        except FileError as error:
+            detail = str(error).removeprefix(f"{shown_path(str(resolved))}: ")
+            refuse_element(element, f"{shown(named)} cannot be read: {detail}")
+        return decode(data, shown_path(str(path)), path), resolved
