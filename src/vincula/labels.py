@@ -72,6 +72,8 @@ class Uncertainty:
         digits_angle: The same over angles and directions [rad].
         tolerance_length: Manufacturing tolerance on lengths [m].
         tolerance_angle: Manufacturing tolerance on angles [rad].
+        curvature: Bound K on the second derivatives of the loop equations, in scaled units: how much
+            the matrices change per unit of configuration error.
     """
 
     residual: float = 0.0
@@ -79,6 +81,7 @@ class Uncertainty:
     digits_angle: float = 0.0
     tolerance_length: float = 0.0
     tolerance_angle: float = 0.0
+    curvature: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

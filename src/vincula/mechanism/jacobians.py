@@ -61,6 +61,7 @@ def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
             precision.digits_angle,
             precision.tolerance_length,
             precision.tolerance_angle,
+            builder.curvature(),
         ),
         mechanism=mechanism.name,
         reference=reference.label or reference.body,
@@ -263,6 +264,24 @@ class _Builder:
                     jacobian[row, self.index[axis]] = coefficient
             row += 1
         return jacobian, member
+
+    def curvature(self) -> float:
+        """Bound K on the second derivatives of the loop equations in scaled units.
+
+        Along a chain of n axes |f''(v, v)| <= (sum |v_i|)^2 r <= n r |v|^2 with r the largest distance
+        of its joints from the cut; the member's own motion counts as one more chain.
+        """
+        length = self.mechanism.length
+        longest = max(
+            (
+                sum(len(self.path_columns(body)[0]) for body, _ in block.terms) + abs(block.carried)
+                for block in self._blocks
+            ),
+            default=0,
+        )
+        frames = [part_frames(joint, self.poses)[0].position for joint in self.mechanism.joints]
+        reach = max((float(np.linalg.norm(point - self.origin)) for point in frames), default=0.0)
+        return max(1, longest) * max(1.0, reach / length)
 
     def motions(self, order: Sequence[int]) -> BodyMotions:
         """How every rigid group of bodies moves, columns in the model's order."""

@@ -27,7 +27,9 @@ EPS = float(np.finfo(float).eps)
 ROUNDING_FACTOR = 10.0
 """Rounding uncertainty is this times max(m, n) eps, relative to the largest singular value."""
 SAFETY = 10.0
-"""A singular value this many times above the uncertainty is certainly not zero."""
+"""A singular value this many times above the uncertainty is certainly not zero; one this many times
+below rounding certainly is.  (The band below rounding matters: a Stewart platform 1e-12 rad off its
+singularity has true singular values of 5e-14, above actual but below worst-case rounding.)"""
 
 Status = Literal["certain", "doubtful"]
 MatrixName = Literal[
@@ -48,7 +50,7 @@ class RankDecision:
         shape: Its shape.
         rank: Singular values above the cutoff.
         rank_min: Those above `SAFETY` times the cutoff: certainly not zero.
-        rank_max: Those above rounding alone: not certainly zero.
+        rank_max: Those above rounding / `SAFETY`: not certainly zero.
         singular_values: All of them, largest first (scaled units).
         cutoff: The uncertainty Delta, same units.
         cutoffs: Its parts: rounding, and closure, digits, tolerance where they are not zero.
@@ -127,7 +129,7 @@ def decide_rank(
         shape=(matrix.shape[0], matrix.shape[1]),
         rank=_above(sigma, cutoff),
         rank_min=_above(sigma, SAFETY * cutoff),
-        rank_max=_above(sigma, rounding),
+        rank_max=_above(sigma, rounding / SAFETY),
         singular_values=sigma,
         cutoff=cutoff,
         cutoffs=parts,
@@ -158,12 +160,14 @@ class RankLedger:
         residual: Closure residual in scaled units.
         digits: Half a unit of the last typed digit in scaled units.
         tolerance: Manufacturing tolerance in scaled units.
+        curvature: Bound K on the second derivatives of the loop equations in scaled units.
     """
 
     scaled: ScaledMatrices
     residual: float = 0.0
     digits: float = 0.0
     tolerance: float = 0.0
+    curvature: float = 1.0
     _decisions: dict[str, RankDecision] = field(default_factory=dict, repr=False)
 
     @staticmethod
@@ -176,6 +180,7 @@ class RankLedger:
             residual=known.residual / size,
             digits=known.digits_length / size + known.digits_angle,
             tolerance=known.tolerance_length / size + known.tolerance_angle,
+            curvature=known.curvature,
         )
 
     def matrix(self, name: MatrixName) -> Matrix:
@@ -191,12 +196,14 @@ class RankLedger:
     def decision(self, name: MatrixName) -> RankDecision:
         """The rank of one of the eight matrices."""
         if name not in self._decisions:
+            matrix = self.matrix(name)
+            values = self._values_of_all if name == "all" else singular_values(matrix)
             self._decisions[name] = decide_rank(
-                self.matrix(name),
+                matrix,
                 name=_WORDS[name],
                 scale=self.scale,
-                uncertainty=self.uncertainty,
-                values=self._values_of_all if name == "all" else None,
+                uncertainty=self._uncertainty(matrix, values),
+                values=values,
             )
         return self._decisions[name]
 
@@ -216,12 +223,20 @@ class RankLedger:
 
     @cached_property
     def uncertainty(self) -> Mapping[str, float]:
-        """Relative uncertainties beyond rounding, by cause; closure by the Kantorovich number."""
+        """Relative uncertainties of [J_a J_p -G^T] beyond rounding, by cause."""
+        return self._uncertainty(self._all, self._values_of_all)
+
+    def _uncertainty(self, matrix: Matrix, values: Vector) -> Mapping[str, float]:
+        """Relative uncertainties of one matrix beyond rounding, by cause.
+
+        Closure goes by the Kantorovich number h = K rho / sigma^2 of the matrix itself: whoever closed
+        the loops held some joints, and the error of the others grows with the smallest singular value
+        of *their* columns, not of all columns together.
+        """
         parts = {"digits": self.digits, "tolerance": self.tolerance}
-        rho = self.residual
+        rho = self.curvature * self.residual
         if rho > 0.0:
-            before = decide_rank(self._all, scale=self.scale, uncertainty=parts, values=self._values_of_all)
-            sigma = before.kept
+            sigma = decide_rank(matrix, scale=self.scale, uncertainty=parts, values=values).kept
             parts["closure"] = rho / sigma if rho < 0.5 * sigma * sigma else (2.0 * rho) ** 0.5
         return parts
 
