@@ -1,0 +1,229 @@
+"""The page of `vincula inspect`: what a newcomer wants to know about a file, on one screen."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any, Final
+
+from vincula.cli.page import Column, Page, number, plural, point
+from vincula.errors import listing
+
+MOST_ROWS: Final = 14
+"""Rows of a table before the rest is only counted; `--all` shows them."""
+
+Facts = Mapping[str, Any]
+
+
+def inspection_page(facts: Facts, *, everything: bool = False) -> Page:
+    """The page for the object of `inspection`.
+
+    Args:
+        facts: What is known.
+        everything: Show every row of every table.
+    """
+    most = 10**9 if everything else MOST_ROWS
+    page = Page()
+    page.heading(facts["mechanism"], f"{facts['space']} mechanism from {facts['file']}")
+    page.facts(_summary(facts))
+    _joints(page, facts, most)
+    _contacts(page, facts, most)
+    _loops(page, facts, most)
+    _load(page, facts["load"], everything)
+    for note in facts["notes"]:
+        page.sentence(note, "note:")
+    _next_step(page, facts)
+    return page
+
+
+def _summary(facts: Facts) -> list[tuple[str, str]]:
+    kinds = Counter(joint["type"] for joint in facts["joints"])
+    axes = [axis for joint in facts["joints"] for axis in joint["axes"]]
+    passive = [axis["name"] for axis in axes if axis["state"] == "passive"]
+    motors = facts["active"]
+    return [
+        ("bodies", f"{len(facts['bodies'])} and the ground: {_names(facts['bodies'])}"),
+        ("joints", f"{len(facts['joints'])}: " + _tally(kinds)),
+        ("contacts", _tally(Counter(contact["type"] for contact in facts["contacts"]))),
+        ("couplings", _names(facts["couplings"])),
+        ("motors", f"{len(motors)}: {listing(motors)}" if motors else "none"),
+        ("passive", f"{len(passive)}: {listing(passive)}" if passive else "none"),
+        ("locked", listing(facts["locked"]) if facts["locked"] else ""),
+        ("loops", _loop_words(facts)),
+        ("mobility", _mobility_words(facts["mobility"])),
+        ("reference member", _reference_words(facts)),
+        ("sites and frames", _names(facts["frames"])),
+        ("configurations", _keyframes(facts)),
+    ]
+
+
+def _keyframes(facts: Facts) -> str:
+    names = [f"key:{name}" for name in facts["keyframes"]]
+    return f"{listing(names)} (for --at)" if names else ""
+
+
+def _names(parts: list[dict[str, Any]]) -> str:
+    return listing((part["name"] for part in parts), 8) if parts else ""
+
+
+def _tally(kinds: Counter[str]) -> str:
+    return ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+
+
+def _loop_words(facts: Facts) -> str:
+    loops, opened = facts["loops"], facts["closure"]["open"]
+    if not loops and not opened:
+        return "none: an open chain" if not facts["contacts"] else "none"
+    if opened:
+        return f"{len(loops)}; {plural(len(opened), 'gap')}: not closed at this configuration (see below)"
+    return f"{len(loops)}, closed to {number(facts['closure']['residual'], 2)} m"
+
+
+def _mobility_words(mobility: Facts) -> str:
+    if mobility["motions"] is None:
+        return f"not known: {mobility['reason']}"
+    text = plural(mobility["motions"], "independent motion")
+    return text if mobility["status"] == "certain" else f"{text} (doubtful: see vincula analyze)"
+
+
+def _reference_words(facts: Facts) -> str:
+    reference = facts["reference"]
+    if reference is None:
+        return "none yet"
+    return f"{reference['body']}, point {point(reference['point'])} m on it, {reference['axes']} axes"
+
+
+def _joints(page: Page, facts: Facts, most: int) -> None:
+    if not facts["joints"]:
+        return
+    page.heading("Joints")
+    shown = [joint for joint in facts["joints"] if joint["type"] != "fixed"] or facts["joints"]
+    columns = [
+        Column("name"),
+        Column("type"),
+        Column("connects", fold=True),
+        Column("at", justify="right"),
+        Column("role", fold=True),
+    ]
+    page.table(columns, [_joint_row(joint) for joint in shown[:most]])
+    left_out = len(shown) - len(shown[:most])
+    fixed = len(facts["joints"]) - len(shown)
+    more = [plural(left_out, "more joint")] if left_out else []
+    more += [f"{plural(fixed, 'fixed joint')} not listed"] if fixed else []
+    if more:
+        page.sentence("; ".join(more) + (" (--all shows them)" if left_out else ""))
+
+
+def _joint_row(joint: Facts) -> list[str]:
+    return [
+        joint["name"],
+        joint["type"],
+        " - ".join(joint["between"]),
+        _values(joint),
+        _roles(joint),
+    ]
+
+
+def _values(joint: Facts) -> str:
+    if joint["closes_loop"]:
+        return "closes a loop"
+    values, axes = joint["values"], joint["axes"]
+    if len(values) != len(axes):
+        return "quaternion" if len(values) == 4 else "pose"
+    return ", ".join(_value(value, axis["unit"]) for value, axis in zip(values, axes, strict=True))
+
+
+def _value(value: float, unit: str) -> str:
+    if unit == "rad":
+        return f"{number(math.degrees(value), 4)} deg"
+    return f"{number(value, 4)} m"
+
+
+def _roles(joint: Facts) -> str:
+    states = [axis["state"] for axis in joint["axes"]]
+    if len(set(states)) <= 1:
+        return states[0] if states else "rigid"
+    return ", ".join(f"{axis['name']} {axis['state']}" for axis in joint["axes"])
+
+
+def _contacts(page: Page, facts: Facts, most: int) -> None:
+    if not facts["contacts"]:
+        return
+    page.heading("Contacts")
+    rows = [[c["name"], c["type"], " - ".join(c["between"])] for c in facts["contacts"]]
+    page.table([Column("name"), Column("type"), Column("between", fold=True)], rows[:most])
+    if len(rows) > most:
+        page.sentence(f"{plural(len(rows) - most, 'more contact')} (--all shows them)")
+
+
+def _loops(page: Page, facts: Facts, most: int) -> None:
+    loops = facts["loops"]
+    if loops:
+        page.heading("Loops", "joints and contacts in the order of a walk round")
+        for index, loop in enumerate(loops[: max(1, most // 2)], start=1):
+            page.sentence(_walk(loop), f"{index}")
+        left_out = len(loops) - max(1, most // 2)
+        if left_out > 0:
+            page.sentence(f"{plural(left_out, 'more loop')} (--all shows them)")
+    for gap in facts["closure"]["open"]:
+        page.sentence(
+            f"{gap['kind']} {gap['name']!r} is open by {_gap(gap)}: more than "
+            f"{number(facts['closure']['allowed'], 2)} m counts as open",
+            "open:",
+        )
+
+
+def _gap(gap: Facts) -> str:
+    parts = [f"{number(gap['linear'], 3)} m"] if gap["linear"] or not gap["angular"] else []
+    parts += [f"{number(math.degrees(gap['angular']), 3)} deg"] if gap["angular"] else []
+    return " and ".join(parts)
+
+
+def _walk(loop: Facts) -> str:
+    texts = [loop["bodies"][0]]
+    for part, body in zip(loop["parts"], [*loop["bodies"][1:], loop["bodies"][0]], strict=True):
+        texts.append(f"-{part}- {body}")
+    return " ".join(texts)
+
+
+def _load(page: Page, load: Facts, everything: bool) -> None:
+    if not load["counts"] and not load["notes"]:
+        return
+    page.heading("Read from the file", f"format {load['format']}")
+    rows = [
+        [kind, *(str(count[key] or "") for key in ("total", "used", "ignored", "repaired"))]
+        for kind, count in load["counts"].items()
+    ]
+    if rows:
+        numbers = [Column(title, justify="right") for title in ("in all", "used", "ignored", "repaired")]
+        page.table([Column("what"), *numbers], rows)
+    for text in _reasons(load, everything):
+        page.sentence(text)
+    for note in load["notes"]:
+        page.sentence(note, "note:")
+
+
+def _reasons(load: Facts, everything: bool) -> list[str]:
+    """Why things were ignored or repaired; equal reasons once."""
+    groups: dict[tuple[str, str, str], list[str]] = {}
+    for entry in load["entries"]:
+        if entry["fate"] != "used":
+            key = (entry["fate"], entry["kind"], entry["detail"])
+            groups.setdefault(key, []).append(entry["name"])
+    texts = []
+    for (fate, kind, detail), names in groups.items():
+        who = listing([name for name in names if name], 10**6 if everything else 6)
+        texts.append(f"{fate} {kind}{f' {who}' if any(names) else ''}: {detail or 'no reason given'}")
+    return texts
+
+
+def _next_step(page: Page, facts: Facts) -> None:
+    if facts["reference"] is not None:
+        return
+    bodies = [body["name"] for body in facts["bodies"]]
+    page.heading("Next")
+    page.sentence(
+        "Name the body whose motion and forces you want, the reference member: "
+        f"vincula analyze {facts['file']} --reference BODY, with BODY one of {listing(bodies)}."
+    )

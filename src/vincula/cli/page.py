@@ -1,0 +1,159 @@
+"""A report on the terminal: headings, facts, tables and sentences, in the order they were added."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+INDENT: Final = 2
+"""Blanks before everything but headings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table.
+
+    Attributes:
+        title: Its heading; a second line holds the unit.
+        justify: `right` for numbers.
+        fold: True when long texts may be broken over several lines.
+    """
+
+    title: str
+    justify: Literal["left", "right"] = "left"
+    fold: bool = False
+
+
+class Page:
+    """Collects what a command has to say; `show` prints it, as wide as the terminal allows."""
+
+    def __init__(self) -> None:
+        self._parts: list[Callable[[Console], None]] = []
+
+    def heading(self, title: str, note: str = "") -> None:
+        """A heading with a remark behind it, after an empty line."""
+        first = not self._parts
+
+        def print_heading(console: Console) -> None:
+            from rich.text import Text
+
+            if not first:
+                console.print()
+            text = Text(title, style="bold")
+            if note:
+                text.append(f"  {note}", style="not bold")
+            console.print(text)
+
+        self._parts.append(print_heading)
+
+    def sentence(self, text: str, mark: str = "") -> None:
+        """A sentence, wrapped; `mark` stands before its first line."""
+
+        def print_sentence(console: Console) -> None:
+            first = " " * INDENT + (f"{mark} " if mark else "")
+            for line in text.splitlines():
+                for part in textwrap.wrap(
+                    line,
+                    console.width,
+                    initial_indent=first,
+                    subsequent_indent=" " * len(first),
+                    break_long_words=False,
+                    break_on_hyphens=False,
+                ) or [""]:
+                    console.print(part, soft_wrap=True)
+                first = " " * len(first)
+
+        self._parts.append(print_sentence)
+
+    def facts(self, rows: Iterable[tuple[str, str]]) -> None:
+        """Pairs of a label and a text, the texts aligned; pairs without a text are left out."""
+        shown = [(label, text) for label, text in rows if text]
+
+        def print_facts(console: Console) -> None:
+            from rich.table import Table
+
+            table = Table.grid(padding=(0, 2))
+            table.add_column(no_wrap=True, style="dim")
+            table.add_column(overflow="fold")
+            for label, text in shown:
+                table.add_row(label, text)
+            _print_indented(console, table)
+
+        self._parts.append(print_facts)
+
+    def table(self, columns: Sequence[Column], rows: Iterable[Sequence[str]]) -> None:
+        """A table with a line under its head."""
+        body = [list(row) for row in rows]
+
+        def print_table(console: Console) -> None:
+            from rich.box import SIMPLE_HEAD
+            from rich.table import Table
+
+            table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
+            for column in columns:
+                table.add_column(
+                    column.title,
+                    justify=column.justify,
+                    no_wrap=not column.fold,
+                    overflow="fold" if column.fold else "ellipsis",
+                )
+            for row in body:
+                table.add_row(*row)
+            _print_indented(console, table)
+
+        self._parts.append(print_table)
+
+    def show(self) -> None:
+        """Print the page on stdout."""
+        from rich.console import Console
+
+        console = Console(markup=False, highlight=False, emoji=False)
+        for part in self._parts:
+            part(console)
+
+
+def _print_indented(console: Console, table: object) -> None:
+    from rich.padding import Padding
+
+    console.print(Padding(table, (0, 0, 0, INDENT)))  # type: ignore[arg-type]
+
+
+def number(value: float, digits: int = 5) -> str:
+    """A number for a table: `digits` significant digits, no trailing noise, `inf` for infinity."""
+    if value != value:
+        return "-"
+    if value in (float("inf"), float("-inf")):
+        return "inf" if value > 0 else "-inf"
+    return f"{0.0 if value == 0 else value:.{digits}g}"
+
+
+def combination(values: Sequence[float], names: Sequence[str], most: int = 8) -> str:
+    """A vector as a sum over its components: `0.894 vy - 0.447 wz`; parts below a thousandth left out."""
+    largest = max((abs(value) for value in values), default=0.0)
+    if largest == 0.0:
+        return "0"
+    kept = [
+        (value, name) for value, name in zip(values, names, strict=True) if abs(value) >= 1e-3 * largest
+    ]
+    texts: list[str] = []
+    for value, name in kept[:most]:
+        sign = ("- " if value < 0 else "+ ") if texts else ("-" if value < 0 else "")
+        texts.append(f"{sign}{abs(value):.3g} {name}")
+    more = len(kept) - most
+    return " ".join(texts) + (f" ... ({more} more)" if more > 0 else "")
+
+
+def point(values: Iterable[float]) -> str:
+    """A point as `(x, y, z)` with short numbers."""
+    return "(" + ", ".join(number(value, 4) for value in values) + ")"
+
+
+def plural(count: int, singular: str, several: str = "") -> str:
+    """`1 loop`, `2 loops`, `no loops`."""
+    word = singular if count == 1 else several or f"{singular}s"
+    return f"{count or 'no'} {word}"

@@ -1,0 +1,165 @@
+"""What a command is about: the mechanism of FILE with the motors, member and configuration asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Literal, TypeVar, cast
+
+import click
+
+from vincula.errors import MissingReferenceError, ModelError, UnknownNameError
+
+if TYPE_CHECKING:
+    from vincula.files.report import LoadReport
+    from vincula.mechanism.configuration import Configuration
+    from vincula.mechanism.mechanism import Mechanism
+    from vincula.model import LinearModel
+    from vincula.weights import Weights
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A mechanism and the configuration it is looked at.
+
+    Attributes:
+        file: FILE as it was written.
+        mechanism: The mechanism with everything asked for.
+        configuration: Where it is looked at.
+        report: What the reader did with the file.
+    """
+
+    file: str
+    mechanism: Mechanism
+    configuration: Configuration
+    report: LoadReport
+
+    def with_active(self, text: str | None) -> Subject:
+        """The same with other motors; None keeps those of the file."""
+        if text is None:
+            return self
+        return replace(self, mechanism=_usage("--active", lambda: self.mechanism.with_active(text)))
+
+    def with_weights(self, text: str | None) -> Subject:
+        """The same with the weights of a `--weights` text; None keeps those of the file."""
+        if text is None:
+            return self
+        from vincula.files.weights import read_weights
+
+        weights: Weights = read_weights(text, self.mechanism)
+        return replace(self, mechanism=self.mechanism.with_weights(weights))
+
+    def linearize(self) -> LinearModel:
+        """J_a, J_p and G at the configuration.
+
+        Raises:
+            MissingReferenceError: No reference member; lists the bodies and the option.
+            ClosureError: A loop is open.
+        """
+        if self.mechanism.reference is None:
+            raise MissingReferenceError(body.name for body in self.mechanism.bodies)
+        return self.mechanism.linearize(self.configuration)
+
+
+def read_subject(
+    file: str,
+    *,
+    parameters: Mapping[str, str],
+    lock: str | None,
+    reference: str | None,
+    axes: str | None,
+    at: str | None,
+    tolerance: str | None,
+) -> Subject:
+    """The mechanism of a file with the common options applied.
+
+    Raises:
+        FileError: The file cannot be read.
+        ModelError: A name or value in an option that the mechanism does not have.
+        click.UsageError: An option that cannot be understood.
+    """
+    from vincula.files.configuration import read_configuration
+    from vincula.files.load import load_with_report
+
+    mechanism, report = load_with_report(file, parameters=dict(parameters))
+    if lock is not None:
+        mechanism = _usage("--lock", lambda: mechanism.with_lock(lock))
+    mechanism = with_reference(mechanism, reference, axes)
+    if tolerance is not None:
+        mechanism = mechanism.with_tolerance(*tolerances(tolerance))
+    configuration = mechanism.home if at is None else read_configuration(at, mechanism)
+    return Subject(file, mechanism, configuration, report)
+
+
+def with_reference(mechanism: Mechanism, text: str | None, axes: str | None) -> Mechanism:
+    """The mechanism with the reference member of `--reference` and `--axes`."""
+    old = mechanism.reference
+    chosen = cast("Literal['ground', 'body']", axes or (old.axes if old is not None else "ground"))
+    if text is None:
+        if old is None or axes is None:
+            return mechanism
+        return replace(mechanism, reference=replace(old, axes=chosen))
+    body, origin, frame = split_reference(mechanism, text.strip())
+    return _usage(
+        "--reference", lambda: mechanism.with_reference(body, origin, frame=frame, axes=chosen)
+    )
+
+
+def split_reference(mechanism: Mechanism, text: str) -> tuple[str, list[float] | None, str | None]:
+    """Body, point and frame of `BODY`, `BODY@FRAME` or `BODY@x,y,z`; a body may have an `@` in its name.
+
+    Raises:
+        UnknownNameError: No such body.
+    """
+    body, at, point = text.rpartition("@")
+    if text in mechanism.body or text in ("ground", "world") or not at:
+        body, point = text, ""
+    if body not in mechanism.body and body not in ("ground", "world"):
+        carriers = [f"{frame.body}@{frame.name}" for frame in mechanism.frames if frame.name == body]
+        if carriers:
+            raise click.UsageError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}")
+        raise UnknownNameError("body", body, mechanism.body)
+    if not point:
+        return body, None, None
+    coordinates = _numbers(point)
+    if coordinates is None or any(f.name == point and f.body == body for f in mechanism.frames):
+        return body, None, point
+    return body, coordinates, None
+
+
+def tolerances(text: str) -> tuple[float, float]:
+    """Length [m] and angle [rad] of a `--tolerance` text such as `0.1mm,0.05deg`.
+
+    Raises:
+        click.UsageError: A negative or repeated tolerance, or no number.
+    """
+    from vincula.spatial.units import quantity
+
+    found: dict[str, float] = {}
+    for part in text.split(","):
+        dimension: Literal["length", "angle"] = "angle" if part.strip().endswith(("rad", "deg")) else "length"
+        value = _usage("--tolerance", partial(quantity, part, dimension, "tolerance"))
+        if value < 0.0 or dimension in found:
+            raise click.UsageError(
+                f"--tolerance {text!r}: give one length and one angle, not negative, like 0.1mm,0.05deg"
+            )
+        found[dimension] = value
+    return found.get("length", 0.0), found.get("angle", 0.0)
+
+
+def _numbers(text: str) -> list[float] | None:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        return None
+
+
+def _usage(option: str, action: Callable[[], Result]) -> Result:
+    """What the action returns; a refusal is the fault of the option."""
+    try:
+        return action()
+    except ModelError as error:
+        raise click.UsageError(f"{option}: {error}") from error
