@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +41,7 @@ def kinematic_ellipsoid(
         RankAmbiguityWarning: The counts depend on singular values within the uncertainty.
         MixedUnitsWarning: Metres and radians are added with weights that nobody chose.
     """
-    return _ellipsoid(model, weights, _KINEMATIC, viewpoint, convention)
+    return _warned("kinematic", model, weights, viewpoint, convention)
 
 
 def active_force_ellipsoid(
@@ -56,9 +57,7 @@ def active_force_ellipsoid(
     appear with efficiency zero.  Arguments and warnings as for `kinematic_ellipsoid`, with W_w and
     W_tau; `convention="printed"` gives the numbers printed in the paper (theory page, section 5).
     """
-    if convention == "printed":
-        return _printed(model, weights, "active force", viewpoint)
-    return _ellipsoid(model, weights, _ACTIVE, viewpoint, convention)
+    return _warned("active force", model, weights, viewpoint, convention)
 
 
 def passive_force_ellipsoid(
@@ -74,9 +73,7 @@ def passive_force_ellipsoid(
     infinity, the set is a cylinder along them.  Arguments and warnings as for
     `active_force_ellipsoid`.
     """
-    if convention == "printed":
-        return _printed(model, weights, "passive force", viewpoint)
-    return _ellipsoid(model, weights, _PASSIVE, viewpoint, convention)
+    return _warned("passive force", model, weights, viewpoint, convention)
 
 
 def internal_force_ellipsoid(
@@ -92,7 +89,7 @@ def internal_force_ellipsoid(
     over them.  Depends on where the graph was cut (see `model.cuts`).  Arguments and warnings as for
     `kinematic_ellipsoid`, with W_f and W_tau.
     """
-    return _ellipsoid(model, weights, _INTERNAL, viewpoint, convention)
+    return _warned("internal force", model, weights, viewpoint, convention)
 
 
 def dual_force_ellipsoid(
@@ -104,43 +101,69 @@ def dual_force_ellipsoid(
 ) -> Ellipsoid:
     """The force problem dual to the kinematic one: eq. (24).
 
-    Optimised over internal torques, worst case over structural wrenches.  With W_w = W_u^-1 and W_tau = W_q^-1 its efficiencies are the reciprocals of the finite kinematic
-    ones.  Arguments and warnings as for `kinematic_ellipsoid`, with W_w and W_tau.
+    Optimised over internal torques, worst case over structural wrenches.  With W_w = W_u^-1 and
+    W_tau = W_q^-1 its efficiencies are the reciprocals of the finite kinematic ones.  Arguments and
+    warnings as for `kinematic_ellipsoid`, with W_w and W_tau.
     """
-    return _ellipsoid(model, weights, _DUAL, viewpoint, convention)
+    return _warned("dual force", model, weights, viewpoint, convention)
 
 
 @dataclass(frozen=True, slots=True)
 class _Recipe:
     """What one ellipsoid is made of, and which classes it lists (house page)."""
 
-    kind: Kind
+    relation: Callable[[LinearModel], Relation]
     task: Quantity
     motor: Quantity
     listed: tuple[Class, ...]
 
 
-_KINEMATIC = _Recipe("kinematic", "twist", "rate", ("infinite", "finite", "zero", "undefined"))
-_ACTIVE = _Recipe("active force", "wrench", "torque", ("finite", "zero", "undefined"))
-_PASSIVE = _Recipe("passive force", "wrench", "torque", ("infinite", "finite", "undefined"))
-_INTERNAL = _Recipe("internal force", "contact_force", "torque", ("infinite", "finite", "undefined"))
-_DUAL = _Recipe("dual force", "wrench", "torque", ("finite", "undefined"))
+_RECIPES: dict[Kind, _Recipe] = {
+    "kinematic": _Recipe(kinematic_relation, "twist", "rate", ("infinite", "finite", "zero", "undefined")),
+    "active force": _Recipe(force_relation, "wrench", "torque", ("finite", "zero", "undefined")),
+    "passive force": _Recipe(force_relation, "wrench", "torque", ("infinite", "finite", "undefined")),
+    "internal force": _Recipe(
+        internal_relation, "contact_force", "torque", ("infinite", "finite", "undefined")
+    ),
+    "dual force": _Recipe(force_relation, "wrench", "torque", ("finite", "undefined")),
+}
 
 
-def _ellipsoid(
+def ellipsoid_of_kind(
+    kind: Kind,
     model: LinearModel,
-    weights: Weights | None,
-    recipe: _Recipe,
-    viewpoint: Viewpoint,
-    convention: Convention,
+    weights: Weights,
+    viewpoint: Viewpoint = "efficiency",
+    convention: Convention = "invariant",
 ) -> Ellipsoid:
-    used = resolved_weights(model, weights)
-    task, motor = used.metric(recipe.task, model), used.metric(recipe.motor, model)
-    relation = _relation(model, recipe.task)
-    found = spectrum(relation, task, motor)
-    warn_of_doubt(model)
-    warn_of_mixed_units(model, used, recipe.task)
-    return assembled(model, recipe.kind, recipe.listed, found, task, motor, viewpoint, convention)
+    """One of the five ellipsoids, without warnings.
+
+    Raises:
+        ModelError: Unknown viewpoint or convention.
+    """
+    _refuse_unknown(viewpoint, ("efficiency", "accuracy"), "viewpoint")
+    _refuse_unknown(convention, ("invariant", "printed"), "convention")
+    recipe = _RECIPES[kind]
+    task, motor = weights.metric(recipe.task, model), weights.metric(recipe.motor, model)
+    listed = recipe.listed
+    if convention == "printed" and kind in ("active force", "passive force"):
+        from vincula.analysis.printed import printed_spectrum
+
+        found = printed_spectrum(model, kind, task, motor)
+        listed = tuple(c for c in listed if c != "zero")
+    else:
+        found = spectrum(recipe.relation(model), task, motor)
+    return _assembled(model, kind, listed, found, task, motor, viewpoint, convention)
+
+
+def task_quantity(kind: Kind) -> Quantity:
+    """The quantity on the task side of an ellipsoid."""
+    return _RECIPES[kind].task
+
+
+def motor_quantity(kind: Kind) -> Quantity:
+    """The quantity on the motor side of an ellipsoid."""
+    return _RECIPES[kind].motor
 
 
 def resolved_weights(model: LinearModel, weights: Weights | None) -> Weights:
@@ -148,25 +171,21 @@ def resolved_weights(model: LinearModel, weights: Weights | None) -> Weights:
     return weights or model.weights or UNIT
 
 
-def _relation(model: LinearModel, task: Quantity) -> Relation:
-    if task == "twist":
-        return kinematic_relation(model)
-    return force_relation(model) if task == "wrench" else internal_relation(model)
-
-
-def _printed(model: LinearModel, weights: Weights | None, kind: Kind, viewpoint: Viewpoint) -> Ellipsoid:
-    from vincula.analysis.printed import printed_spectrum
-
+def _warned(
+    kind: Kind,
+    model: LinearModel,
+    weights: Weights | None,
+    viewpoint: Viewpoint,
+    convention: Convention,
+) -> Ellipsoid:
     used = resolved_weights(model, weights)
-    task, motor = used.metric("wrench", model), used.metric("torque", model)
-    found = printed_spectrum(model, kind, task, motor)
+    found = ellipsoid_of_kind(kind, model, used, viewpoint, convention)
     warn_of_doubt(model)
-    warn_of_mixed_units(model, used, "wrench")
-    listed: tuple[Class, ...] = ("finite",) if kind == "active force" else ("infinite", "finite")
-    return assembled(model, kind, listed, found, task, motor, viewpoint, "printed")
+    warn_of_mixed_units(model, used, task_quantity(kind))
+    return found
 
 
-def assembled(
+def _assembled(
     model: LinearModel,
     kind: Kind,
     listed: tuple[Class, ...],
@@ -177,8 +196,6 @@ def assembled(
     convention: Convention,
 ) -> Ellipsoid:
     """An ellipsoid with the listed classes of a spectrum."""
-    _refuse_unknown(viewpoint, ("efficiency", "accuracy"), "viewpoint")
-    _refuse_unknown(convention, ("invariant", "printed"), "convention")
     efficiencies: list[float] = []
     classes: list[Class] = []
     task_side: list[Vector | None] = []

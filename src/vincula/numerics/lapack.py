@@ -7,6 +7,7 @@ arithmetic.  Empty matrices, which LAPACK refuses, are legal here.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg.lapack import dgejsv, dgeqp3, dgeqrf, dgesvd, dorgqr, dormqr
 
 from vincula.arrays import Matrix, Vector
@@ -73,6 +74,15 @@ def qr_rows_pivoted(matrix: Matrix, columns: int) -> Matrix:
     unsorted = np.empty((m, columns))
     unsorted[order] = _explicit(packed, tau, columns)
     return unsorted
+
+
+def pivots(matrix: Matrix) -> NDArray[np.intp]:
+    """Column indices in the order of pivoted QR: the first ones are the most independent."""
+    if 0 in matrix.shape:
+        return np.arange(matrix.shape[1])
+    _, order, _, _, info = dgeqp3(matrix)
+    _refuse_failure("geqp3", info)
+    return np.asarray(order - 1, dtype=np.intp)
 
 
 def eliminated(fixed: Matrix, block: Matrix) -> tuple[Matrix, Matrix]:

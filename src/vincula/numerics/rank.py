@@ -207,6 +207,11 @@ class RankLedger:
             )
         return self._decisions[name]
 
+    @property
+    def names(self) -> tuple[MatrixName, ...]:
+        """The eight matrices."""
+        return MATRIX_NAMES
+
     def decided(self, name: MatrixName) -> bool:
         """Whether this rank was asked for already."""
         return name in self._decisions

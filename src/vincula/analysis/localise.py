@@ -1,0 +1,33 @@
+"""From an orthonormal kernel to few simple motions: each over as few joints as possible.
+
+An orthonormal basis mixes everything with everything; six legs that spin freely come out as six
+mixtures.  The echelon form on well-chosen pivots separates them: independent parts of a kernel own
+their pivots, so every vector stays inside one part.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vincula.arrays import Matrix
+from vincula.numerics.lapack import pivots
+from vincula.numerics.rank import negligible
+
+
+def localised(basis: Matrix, preferred: slice | None = None, doubt: float = 0.0) -> Matrix:
+    """The same subspace in echelon form, columns scaled to a largest component of one.
+
+    Args:
+        basis: n x k independent columns.
+        preferred: Rows among which pivots are sought; the columns must be independent there.
+        doubt: Relative uncertainty of the subspace: components below it are set to zero.
+    """
+    k = basis.shape[1]
+    if k == 0:
+        return basis
+    rows = np.arange(basis.shape[0])[preferred or slice(None)]
+    chosen = rows[pivots(basis[rows].T)[:k]]
+    simple = basis @ np.linalg.inv(basis[chosen])
+    simple = simple / np.abs(simple).max(axis=0)
+    clean = [[0.0 if negligible(abs(x), 1.0, doubt) else x for x in row] for row in simple.tolist()]
+    return np.array(clean)[:, np.argsort(chosen, kind="stable")]

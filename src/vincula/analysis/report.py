@@ -1,0 +1,209 @@
+"""An analysis as a JSON object (schema vincula/analysis/1) and as text for people."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vincula.analysis.diagnosis import contradictions
+from vincula.analysis.doubt import doubt_messages
+from vincula.analysis.ellipsoid import Ellipsoid
+from vincula.analysis.equilibrium import balances_every_wrench
+from vincula.analysis.manipulability import motor_quantity, motor_units, task_quantity
+from vincula.analysis.wording import components
+from vincula.arrays import Vector
+from vincula.model import LinearModel
+from vincula.numerics.metric import Metric
+from vincula.numerics.rank import RankDecision
+
+if TYPE_CHECKING:
+    from vincula.analysis.maps import LinearMap
+    from vincula.analysis.result import Analysis
+
+SCHEMA = "vincula/analysis/1"
+
+
+def as_object(analysis: Analysis) -> dict[str, Any]:
+    """The JSON object: numbers at full precision, infinity as "inf", undefined as null."""
+    model = analysis.model
+    maps = {
+        "twist_from_rates": analysis.twist_from_rates,
+        "torque_from_wrench": analysis.torque_from_wrench,
+    }
+    return {
+        "schema": SCHEMA,
+        "mechanism": model.mechanism,
+        "reference": model.reference,
+        "frame": model.frame,
+        "active": [c.name for c in model.motors],
+        "passive": [c.name for c in model.passives],
+        "viewpoint": analysis.viewpoint,
+        "convention": analysis.convention,
+        "model": _model(model),
+        "components": {
+            "task": list(model.twist_components),
+            "task_units": list(model.twist_units),
+            "wrench": list(model.wrench_components),
+            "wrench_units": list(model.wrench_units),
+            "motors": [c.name for c in model.motors],
+            "rate_units": list(motor_units(model, "rate")),
+            "torque_units": list(motor_units(model, "torque")),
+        },
+        "mobility": {
+            "counts": model.ledger.counts.as_dict(),
+            "nullity": model.ledger.counts.nullity,
+            "summary": model.ledger.summary.as_dict(),
+            "verdicts": list(analysis.verdicts),
+            "blocks": {
+                block.name: {
+                    "meaning": block.meaning,
+                    "motors": _columns(block.motors),
+                    "passives": _columns(block.passives),
+                    "twist": _columns(block.twist),
+                    "residual": block.residual,
+                }
+                for block in analysis.motions
+            },
+        },
+        "statics": {
+            "balances_every_wrench": balances_every_wrench(model),
+            "structural_wrenches": _columns(analysis.forces.structural.wrench),
+            "internal_torques": _columns(analysis.forces.internal.torque),
+            "residual": max(block.residual for block in analysis.forces),
+        },
+        **{e.kind.replace(" ", "_"): _ellipsoid(e) for e in analysis.ellipsoids},
+        "maps": {
+            **{name: _matrix(found) for name, found in maps.items()},
+            "reasons": {name: found.reason for name, found in maps.items() if found.reason},
+            "notes": {name: found.note for name, found in maps.items() if found.note},
+        },
+        "rank": _rank(model),
+        "closure": {"residual": model.uncertainty.residual},
+        "warnings": list(analysis.warnings),
+        "notes": list(model.notes),
+    }
+
+
+def as_text(analysis: Analysis) -> str:
+    """Words, numbers and units, for reading."""
+    model = analysis.model
+    lines = [
+        f"{model.mechanism}: member {model.reference}, {model.frame}",
+        f"  motors:  {', '.join(c.name for c in model.motors) or '(none)'}",
+        f"  passive: {', '.join(c.name for c in model.passives) or '(none)'}",
+        "",
+        *(f"  {verdict}" for verdict in analysis.verdicts),
+    ]
+    for ellipsoid in analysis.ellipsoids:
+        lines += ["", f"{ellipsoid.kind} ({_per(ellipsoid)})", *_table(ellipsoid)]
+    lines += ["", f"rank: {model.ledger.status}; closure residual {model.uncertainty.residual:.2g} m"]
+    lines += [f"note: {note}" for note in model.notes]
+    lines += [f"warning: {message}" for message in analysis.warnings]
+    return "\n".join(lines)
+
+
+def _table(ellipsoid: Ellipsoid) -> list[str]:
+    if not ellipsoid.classes:
+        return ["  (none)"]
+    lines = []
+    for value, kind, task, motor in zip(
+        ellipsoid.efficiencies,
+        ellipsoid.classes,
+        ellipsoid.task_directions,
+        ellipsoid.motor_directions,
+        strict=True,
+    ):
+        said = {"infinite": "inf", "undefined": "undefined"}.get(kind, f"{value:.5g}")
+        direction = "-" if task is None else components(task, ellipsoid.components)
+        by = "-" if motor is None else components(motor, ellipsoid.motors)
+        lines.append(f"  {said:>10}   {direction}   by {by}")
+    return lines
+
+
+def _per(ellipsoid: Ellipsoid) -> str:
+    units = "/".join(dict.fromkeys(ellipsoid.units)) or "1"
+    motors = "/".join(dict.fromkeys(ellipsoid.motor_units)) or "1"
+    return f"{units} squared per {motors} squared, weighted"
+
+
+def _model(model: LinearModel) -> dict[str, Any]:
+    return {
+        "rows": [
+            {"name": r.name, "kind": r.kind, "source": r.source, "unit": "m/s" if r.linear else "rad/s"}
+            for r in model.rows
+        ],
+        "columns": [c.name for c in model.columns],
+        "cuts": [{"joint": c.joint, "kind": c.kind, "role": c.role, "at": list(c.at)} for c in model.cuts],
+        "length": model.length,
+    }
+
+
+def _ellipsoid(ellipsoid: Ellipsoid) -> dict[str, Any]:
+    return {
+        "efficiencies": [_number(v) for v in ellipsoid.efficiencies],
+        "classes": list(ellipsoid.classes),
+        "task_directions": [_vector(d) for d in ellipsoid.task_directions],
+        "motor_directions": [_vector(d) for d in ellipsoid.motor_directions],
+        "weights": {
+            task_quantity(ellipsoid.kind): _weight(ellipsoid.task_weight),
+            motor_quantity(ellipsoid.kind): _weight(ellipsoid.motor_weight),
+        },
+    }
+
+
+def _rank(model: LinearModel) -> dict[str, Any]:
+    ledger = model.ledger
+    low, high = ledger.scenarios
+    return {
+        "status": ledger.status,
+        "decisions": [_decision(ledger.decision(name)) for name in ledger.names],
+        "scenarios": {"all_doubtful_zero": low.as_dict(), "none_zero": high.as_dict()},
+        "contradictions": contradictions(model),
+        "messages": doubt_messages(model),
+    }
+
+
+def _decision(decision: RankDecision) -> dict[str, Any]:
+    return {
+        "matrix": decision.name,
+        "shape": list(decision.shape),
+        "rank": decision.rank,
+        "rank_min": decision.rank_min,
+        "rank_max": decision.rank_max,
+        "status": decision.status,
+        "cutoff": decision.cutoff,
+        "cutoffs": dict(decision.cutoffs),
+        "deciding": decision.deciding,
+        "gap": _number(decision.gap),
+        "singular_values": [float(v) for v in decision.singular_values],
+    }
+
+
+def _matrix(found: LinearMap) -> list[list[float]] | None:
+    return None if found.matrix is None else [[float(x) for x in row] for row in found.matrix]
+
+
+def _weight(metric: Metric) -> list[Any]:
+    diagonal = metric.diagonal
+    if diagonal is not None:
+        return [_number(w) for w in diagonal]
+    return [[float(x) for x in row] for row in metric.matrix]
+
+
+def _columns(columns: Any) -> list[list[float]]:
+    return [[float(x) for x in column] for column in np.asarray(columns).T]
+
+
+def _vector(direction: Vector | None) -> list[float] | None:
+    return None if direction is None else [float(x) for x in direction]
+
+
+def _number(value: float) -> float | str | None:
+    value = float(value)
+    if math.isnan(value):
+        return None
+    if math.isinf(value):
+        return "inf" if value > 0 else "-inf"
+    return value
