@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Mapping
 from typing import Any, Final
@@ -10,8 +9,10 @@ from typing import Any, Final
 from vincula.cli.page import Column, Page, number, plural, point
 from vincula.errors import listing
 
-MOST_ROWS: Final = 14
-"""Rows of a table before the rest is only counted; `--all` shows them."""
+MOST_ROWS: Final = 12
+"""Rows for joints and contacts before the rest is only counted; `--all` shows them."""
+MOST_LOOPS: Final = 3
+"""The same for loops."""
 
 Facts = Mapping[str, Any]
 
@@ -23,13 +24,11 @@ def inspection_page(facts: Facts, *, everything: bool = False) -> Page:
         facts: What is known.
         everything: Show every row of every table.
     """
-    most = 10**9 if everything else MOST_ROWS
     page = Page()
     page.heading(facts["mechanism"], f"{facts['space']} mechanism from {facts['file']}")
     page.facts(_summary(facts))
-    _joints(page, facts, most)
-    _contacts(page, facts, most)
-    _loops(page, facts, most)
+    _connections(page, facts, 10**9 if everything else MOST_ROWS)
+    _loops(page, facts, 10**9 if everything else MOST_LOOPS)
     _load(page, facts["load"], everything)
     for note in facts["notes"]:
         page.sentence(note, "note:")
@@ -44,7 +43,7 @@ def _summary(facts: Facts) -> list[tuple[str, str]]:
     motors = facts["active"]
     return [
         ("bodies", f"{len(facts['bodies'])} and the ground: {_names(facts['bodies'])}"),
-        ("joints", f"{len(facts['joints'])}: " + _tally(kinds)),
+        ("joints", _tally(kinds) or "none"),
         ("contacts", _tally(Counter(contact["type"] for contact in facts["contacts"]))),
         ("couplings", _names(facts["couplings"])),
         ("motors", f"{len(motors)}: {listing(motors)}" if motors else "none"),
@@ -68,7 +67,7 @@ def _names(parts: list[dict[str, Any]]) -> str:
 
 
 def _tally(kinds: Counter[str]) -> str:
-    return ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    return ", ".join(f"{count} {kind}" for kind, count in kinds.most_common())
 
 
 def _loop_words(facts: Facts) -> str:
@@ -94,50 +93,42 @@ def _reference_words(facts: Facts) -> str:
     return f"{reference['body']}, point {point(reference['point'])} m on it, {reference['axes']} axes"
 
 
-def _joints(page: Page, facts: Facts, most: int) -> None:
-    if not facts["joints"]:
-        return
-    page.heading("Joints")
-    shown = [joint for joint in facts["joints"] if joint["type"] != "fixed"] or facts["joints"]
-    columns = [
-        Column("name"),
-        Column("type"),
-        Column("connects", fold=True),
-        Column("at", justify="right"),
-        Column("role", fold=True),
+def _connections(page: Page, facts: Facts, most: int) -> None:
+    """Joints and contacts in one table; fixed joints only where there is nothing else."""
+    joints = [joint for joint in facts["joints"] if joint["type"] != "fixed"] or facts["joints"]
+    rows = [[j["name"], j["type"], " - ".join(j["between"]), _values(j), _roles(j)] for j in joints]
+    rows += [
+        [c["name"], c["type"], " - ".join(c["between"]), "", "contact"] for c in facts["contacts"]
     ]
-    page.table(columns, [_joint_row(joint) for joint in shown[:most]])
-    left_out = len(shown) - len(shown[:most])
-    fixed = len(facts["joints"]) - len(shown)
-    more = [plural(left_out, "more joint")] if left_out else []
+    if not rows:
+        return
+    page.heading("Joints and contacts" if facts["contacts"] else "Joints")
+    page.table(
+        [
+            Column("name"),
+            Column("type"),
+            Column("connects", fold=True),
+            Column("value", justify="right"),
+            Column("role", fold=True),
+        ],
+        rows[:most],
+    )
+    left_out, fixed = len(rows) - len(rows[:most]), len(facts["joints"]) - len(joints)
+    more = [f"{left_out} more (--all shows them)"] if left_out else []
     more += [f"{plural(fixed, 'fixed joint')} not listed"] if fixed else []
     if more:
-        page.sentence("; ".join(more) + (" (--all shows them)" if left_out else ""))
-
-
-def _joint_row(joint: Facts) -> list[str]:
-    return [
-        joint["name"],
-        joint["type"],
-        " - ".join(joint["between"]),
-        _values(joint),
-        _roles(joint),
-    ]
+        page.sentence("; ".join(more))
 
 
 def _values(joint: Facts) -> str:
     if joint["closes_loop"]:
         return "closes a loop"
     values, axes = joint["values"], joint["axes"]
-    if len(values) != len(axes):
-        return "quaternion" if len(values) == 4 else "pose"
-    return ", ".join(_value(value, axis["unit"]) for value, axis in zip(values, axes, strict=True))
-
-
-def _value(value: float, unit: str) -> str:
-    if unit == "rad":
-        return f"{number(math.degrees(value), 4)} deg"
-    return f"{number(value, 4)} m"
+    if len(values) == len(axes):
+        return ", ".join(
+            f"{number(value, 4)} {axis['unit']}" for value, axis in zip(values, axes, strict=True)
+        )
+    return "pose" if len(values) == 7 else f"({', '.join(number(value, 3) for value in values)})"
 
 
 def _roles(joint: Facts) -> str:
@@ -147,25 +138,14 @@ def _roles(joint: Facts) -> str:
     return ", ".join(f"{axis['name']} {axis['state']}" for axis in joint["axes"])
 
 
-def _contacts(page: Page, facts: Facts, most: int) -> None:
-    if not facts["contacts"]:
-        return
-    page.heading("Contacts")
-    rows = [[c["name"], c["type"], " - ".join(c["between"])] for c in facts["contacts"]]
-    page.table([Column("name"), Column("type"), Column("between", fold=True)], rows[:most])
-    if len(rows) > most:
-        page.sentence(f"{plural(len(rows) - most, 'more contact')} (--all shows them)")
-
-
 def _loops(page: Page, facts: Facts, most: int) -> None:
     loops = facts["loops"]
     if loops:
         page.heading("Loops", "joints and contacts in the order of a walk round")
-        for index, loop in enumerate(loops[: max(1, most // 2)], start=1):
+        for index, loop in enumerate(loops[:most], start=1):
             page.sentence(_walk(loop), f"{index}")
-        left_out = len(loops) - max(1, most // 2)
-        if left_out > 0:
-            page.sentence(f"{plural(left_out, 'more loop')} (--all shows them)")
+        if len(loops) > most:
+            page.sentence(f"{plural(len(loops) - most, 'more loop')} (--all shows them)")
     for gap in facts["closure"]["open"]:
         page.sentence(
             f"{gap['kind']} {gap['name']!r} is open by {_gap(gap)}: more than "
@@ -176,7 +156,7 @@ def _loops(page: Page, facts: Facts, most: int) -> None:
 
 def _gap(gap: Facts) -> str:
     parts = [f"{number(gap['linear'], 3)} m"] if gap["linear"] or not gap["angular"] else []
-    parts += [f"{number(math.degrees(gap['angular']), 3)} deg"] if gap["angular"] else []
+    parts += [f"{number(gap['angular'], 3)} rad"] if gap["angular"] else []
     return " and ".join(parts)
 
 

@@ -109,10 +109,19 @@ class Page:
         self._parts.append(print_table)
 
     def show(self) -> None:
-        """Print the page on stdout."""
+        """Print the page on stdout; without blanks at line ends where that is no terminal."""
+        import click
         from rich.console import Console
 
         console = Console(markup=False, highlight=False, emoji=False)
+        if console.is_terminal:
+            self._print(console)
+            return
+        with console.capture() as captured:
+            self._print(console)
+        click.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
+
+    def _print(self, console: Console) -> None:
         for part in self._parts:
             part(console)
 
