@@ -51,7 +51,10 @@ class Constraints:
         self.couplings: list[Coupling] = []
         disabled = bool(int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_EQUALITY))
         readers: dict[int, Callable[[int], None]] = {
-            _CONNECT: self._connect, _WELD: self._weld, _JOINT: self._joint, _TENDON: self._tendon,
+            _CONNECT: self._connect,
+            _WELD: self._weld,
+            _JOINT: self._joint,
+            _TENDON: self._tendon,
         }
         for index in range(model.neq):
             kind = equality_kind(model, index)
@@ -113,8 +116,14 @@ class Constraints:
             one, two = int(model.site_bodyid[one]), int(model.site_bodyid[two])
         self.closures.append(
             Joint(
-                self._loop_name(index), kind, names.bodies[one], names.bodies[two], on_first, on_second,
-                closure=True, cut="contact" if kind == "spherical" else None,
+                self._loop_name(index),
+                kind,
+                names.bodies[one],
+                names.bodies[two],
+                on_first,
+                on_second,
+                closure=True,
+                cut="contact" if kind == "spherical" else None,
             )
         )
 

@@ -110,9 +110,7 @@ class Tree:
             return Joint(name, kind, first, second, offset @ on_second, on_second, home=home)
         on_second = Pose.at(model.jnt_pos[index], frame_with_z(np.array(model.jnt_axis[index], dtype=float)))
         on_first = offset @ on_second @ _back(kind, home[0])
-        return Joint(
-            name, kind, first, second, on_first, on_second, home=home, limits=self._limits(index)
-        )
+        return Joint(name, kind, first, second, on_first, on_second, home=home, limits=self._limits(index))
 
     def _limits(self, index: int) -> tuple[Limits, ...]:
         limited = bool(self._model.jnt_limited[index])

@@ -100,7 +100,7 @@ class _Reader:
                 continue
             included, path = self._open(child, source)
             if path in seen:
-                refuse_element(child, f"{shown(included.file)} is included twice: a file may be included once")
+                refuse_element(child, f"{shown(included.file)} is included twice; once is allowed")
             seen.add(path)
             document.includes.append(included.file)
             holder = parse_xml(included, self._limits)
@@ -123,9 +123,12 @@ class _Reader:
         if self._opened > self._limits.includes:
             refuse_element(element, f"more than {self._limits.includes} included files")
         beside = source.path.parent if source.path is not None else self._folder
-        candidates = dict.fromkeys([self._folder / named, beside / named])
-        path = next((c for c in candidates if c.exists()), self._folder / named)
-        resolved = path.resolve()
+        try:
+            candidates = [self._folder / named, beside / named]
+            path = next((c for c in candidates if c.exists()), candidates[0])
+            resolved = path.resolve()
+        except (OSError, RuntimeError, ValueError):
+            refuse_element(element, f"got {shown(named)}, expected the path of a file beside the model")
         if not any(resolved.is_relative_to(root) for root in self._roots):
             refuse_element(element, f"{shown(named)} lies outside the folder of the model: it is not opened")
         try:

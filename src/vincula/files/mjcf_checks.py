@@ -1,0 +1,153 @@
+"""What is checked in an MJCF document before MuJoCo sees it: numbers, names, sizes, what is refused.
+
+All independent problems are found in one run; MuJoCo itself stops at its first.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from vincula.files.digits import is_number
+from vincula.files.limits import Limits
+from vincula.files.mjcf_document import Document
+from vincula.files.mjcf_size import check_size
+from vincula.files.names import name_problem
+from vincula.files.problems import Problems, shown
+from vincula.files.xmltree import Element
+
+PLACING: Final = {
+    "pos": 3,
+    "quat": 4,
+    "euler": 3,
+    "axisangle": 4,
+    "xyaxes": 6,
+    "zaxis": 3,
+    "axis": 3,
+    "anchor": 3,
+    "relpose": 7,
+    "ref": 1,
+}
+"""Attributes that place bodies, joints, sites, frames and loops, and how many numbers each has."""
+
+PLACED: Final = frozenset({"body", "joint", "freejoint", "site", "frame", "replicate", "connect", "weld"})
+"""Elements whose placing attributes make the mechanism."""
+
+_DIRECTIONS: Final = {"axis": 3, "zaxis": 3, "axisangle": 3, "quat": 4}
+_SHORTEST: Final = 1e-9
+_TURN: Final = 2 * math.pi * (1 + 1e-9)
+
+_TEXTS: Final = frozenset((
+    "name", "class", "childclass", "dclass", "file", "model", "joint", "joint1", "joint2", "jointinparent",
+    "body", "body1", "body2", "site", "site1", "site2", "refsite", "cranksite", "slidersite", "tendon",
+    "tendon1", "tendon2", "geom", "geom1", "geom2", "sidesite", "material", "mesh", "texture", "hfield",
+    "target", "prefix", "objname", "refname", "key", "actuator", "sensor", "data", "content_type",
+))  # fmt: skip
+_NOT_FINITE: Final = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+_ANGLES: Final = {"euler": slice(0, 3), "axisangle": slice(3, 4)}
+
+_REFUSED: Final = {
+    "plugin": "plugins are not loaded",
+    "flexcomp": "soft bodies are not rigid bodies",
+    "flex": "equalities of soft bodies are not loops of rigid bodies",
+    "flexvert": "equalities of soft bodies are not loops of rigid bodies",
+    "flexstrain": "equalities of soft bodies are not loops of rigid bodies",
+    "distance": "a distance equality is not supported; use connect, weld, joint or tendon",
+}
+
+
+def check_document(document: Document, limits: Limits) -> None:
+    """Refuse a document with numbers, names or sizes that cannot be used.
+
+    Raises:
+        UnsupportedFeatureError: The only problems are elements that vincula cannot represent.
+        FileError: Anything else is wrong; every independent problem is told.
+    """
+    problems = Problems(document.file)
+    for part in document.all_documents():
+        in_radians = angle_unit(part) == "radian"
+        for element in part.root.walk():
+            _check_refused(element, problems)
+            _check_name(element, problems, limits)
+            _check_numbers(element, problems, in_radians=in_radians)
+    problems.refuse_if_any()
+    check_size(document, limits)
+
+
+def angle_unit(document: Document) -> str:
+    """`degree` or `radian`: the last word of the document's compiler elements."""
+    units = [c.attributes["angle"] for c in document.root.find_all("compiler") if "angle" in c.attributes]
+    return units[-1] if units else "degree"
+
+
+def numbers_of(element: Element, attribute: str) -> list[str]:
+    """The words of a numeric attribute."""
+    return element.attributes.get(attribute, "").split()
+
+
+def _check_refused(element: Element, problems: Problems) -> None:
+    reason = _REFUSED.get(element.tag)
+    if reason is None:
+        return
+    inside = element.parent.tag if element.parent is not None else ""
+    if element.tag == "plugin":
+        problems.add(element.place, reason, unsupported=True)
+    elif element.tag == "flexcomp" or (inside == "equality" and element.attributes.get("active") != "false"):
+        problems.add(element.place, f"not supported: {reason}", unsupported=True)
+
+
+def _check_name(element: Element, problems: Problems, limits: Limits) -> None:
+    if not element.name:
+        return
+    expected = name_problem(element.name, limits)
+    if expected:
+        problems.add(element.place, got=shown(element.name), expected=expected)
+
+
+def _check_numbers(element: Element, problems: Problems, *, in_radians: bool) -> None:
+    for attribute, value in element.attributes.items():
+        if element.tag in PLACED and attribute in PLACING:
+            _check_placing(element, attribute, problems, in_radians=in_radians)
+        elif attribute not in _TEXTS:
+            bad = next(_not_finite(value), None)
+            if bad is not None:
+                what = f"{attribute}: got {shown(bad)}, expected finite numbers"
+                problems.add(element.place, what)
+
+
+def _not_finite(value: str) -> Iterator[str]:
+    """Words of an attribute that holds numbers only, and are not finite ones."""
+    words = value.split()
+    if all(is_number(word) or _NOT_FINITE.fullmatch(word) for word in words):
+        for word in words:
+            if not is_number(word) or math.isinf(float(word)):
+                yield word
+
+
+def _check_placing(element: Element, attribute: str, problems: Problems, *, in_radians: bool) -> None:
+    words, count = numbers_of(element, attribute), PLACING[attribute]
+    what = f"{attribute}: got"
+    for word in words:
+        if not is_number(word):
+            finite = "a finite number" if _NOT_FINITE.fullmatch(word) else "a number"
+            problems.add(element.place, f"{what} {shown(word)}, expected {finite}")
+            return
+        if math.isinf(float(word)):
+            problems.add(element.place, f"{what} {shown(word)}, expected a finite number")
+            return
+    if len(words) != count:
+        expected = "1 number" if count == 1 else f"{count} numbers"
+        problems.add(element.place, f"{what} {shown(element.attributes[attribute])}, expected {expected}")
+        return
+    values = [float(word) for word in words]
+    if attribute in _DIRECTIONS and math.hypot(*values[: _DIRECTIONS[attribute]]) < _SHORTEST:
+        problems.add(element.place, f"{what} {shown(element.attributes[attribute])}, which has no direction")
+    angles = _ANGLES.get(attribute)
+    if in_radians and angles is not None and any(abs(angle) > _TURN for angle in values[angles]):
+        problems.add(
+            element.place,
+            f"{what} {shown(element.attributes[attribute])}, expected radians of at most one turn, as the "
+            "compiler element declares; are these degrees?",
+        )
