@@ -49,10 +49,11 @@ def contradictions(model: LinearModel) -> list[str]:
     negative = model.ledger.counts.contradictory
     if not negative:
         return []
-    return [
+    said = (
         f"The rank decisions contradict each other (negative: {listing(negative)}): the configuration is "
         "too near a singular one for these numbers."
-    ]
+    )
+    return [said]
 
 
 def _overall(model: LinearModel) -> str:
@@ -108,9 +109,8 @@ def _redundant_motors(model: LinearModel) -> list[str]:
         motors = _taking_part(column[:n_a], model.motors)
         passives = _taking_part(column[n_a:], model.passives)
         with_passive = f", together with passive {joint_list(passives)}" if passives else ""
-        said.append(
-            f"Motors can move while {model.reference!r} rests (redundancy): {joint_list(motors)}{with_passive}."
-        )
+        rests = f"while {model.reference!r} rests (redundancy)"
+        said.append(f"Motors can move {rests}: {joint_list(motors)}{with_passive}.")
     return said
 
 
@@ -165,9 +165,10 @@ def _internal(model: LinearModel) -> str:
         name for column in localised(torques, doubt=model.ledger.subspace_doubt).T
         for name in _taking_part(column, model.motors)
     ]  # fmt: skip
+    ways = count_of(counts.internal_torques, "way")
     return (
-        f"The motors can work against each other in {count_of(counts.internal_torques, 'way')} without pushing "
-        f"on anything outside: {joint_list(joints)}."
+        f"The motors can work against each other in {ways} without pushing on anything outside: "
+        f"{joint_list(joints)}."
     )
 
 

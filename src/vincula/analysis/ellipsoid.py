@@ -39,6 +39,7 @@ class Ellipsoid:
         task_weight: Metric of the task side.
         motor_weight: Metric of the motor side.
         set: The set of twists, wrenches or contact forces that a unit of motor effort gives.
+        weights_chosen: False when nobody chose the weights.
         viewpoint: efficiency (Yoshikawa) or accuracy (Salisbury and Craig); changes no number.
         convention: invariant, or printed for the regression against the paper.
     """
@@ -55,6 +56,7 @@ class Ellipsoid:
     task_weight: Metric
     motor_weight: Metric
     set: VectorSet
+    weights_chosen: bool = True
     viewpoint: Viewpoint = "efficiency"
     convention: Convention = "invariant"
 

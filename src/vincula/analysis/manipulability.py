@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -153,7 +153,8 @@ def ellipsoid_of_kind(
         listed = tuple(c for c in listed if c != "zero")
     else:
         found = spectrum(recipe.relation(model), task, motor)
-    return _assembled(model, kind, listed, found, task, motor, viewpoint, convention)
+    ellipsoid = _assembled(model, kind, listed, found, task, motor)
+    return replace(ellipsoid, weights_chosen=weights.explicit, viewpoint=viewpoint, convention=convention)
 
 
 def task_quantity(kind: Kind) -> Quantity:
@@ -192,8 +193,6 @@ def _assembled(
     found: Spectrum,
     task: Metric,
     motor: Metric,
-    viewpoint: Viewpoint,
-    convention: Convention,
 ) -> Ellipsoid:
     """An ellipsoid with the listed classes of a spectrum."""
     efficiencies: list[float] = []
@@ -230,8 +229,6 @@ def _assembled(
         task_weight=task,
         motor_weight=motor,
         set=VectorSet(components, units, axes, _unit(lines), doubt),
-        viewpoint=viewpoint,
-        convention=convention,
     )
 
 
