@@ -182,7 +182,7 @@ def axis_twists(
             columns.append(_turn(second.rotation @ second_axis, point - second.position))
         else:
             axis = first.rotation[:, 2]
-            column = _turn(axis, point - first.position)
+            column = _turn(axis, point - second.position)
             if step == "H":
                 column[:3] += lead / (2 * math.pi) * axis
             columns.append(column)

@@ -1,0 +1,340 @@
+"""The equations of closure: unknown joint values, gaps of loops, contacts and couplings, Jacobian.
+
+Unknowns are the values of the kinematic tree's joints, of the joints outside it that must keep values
+of their own (motors, couplings, limits, screws), of motors that drive several axes, and on request
+the pose of the reference member.  Steps are taken in joint rates (SO(3) for balls), scaled by the
+characteristic length, so that one number measures both turns and displacements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+from vincula.errors import MissingReferenceError
+from vincula.mechanism.closure_rows import (
+    Selection,
+    contact_selection,
+    gap_rows,
+    joint_selection,
+    whole_pose,
+)
+from vincula.mechanism.closure_values import Variables, unwound
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.joint_types import axis_twists, motion, values_between
+from vincula.mechanism.kinematics import reference_position
+from vincula.mechanism.parts import GROUND, ContactPart, Coupling, Drive, Joint
+from vincula.mechanism.residuals import axis_linear, axis_values
+from vincula.spatial.poses import Pose
+from vincula.spatial.selectors import contact_components
+from vincula.spatial.twists import moment_arm
+
+if TYPE_CHECKING:
+    from vincula.mechanism.mechanism import Mechanism
+
+MEMBER: Final = "(pose of the reference member)"
+"""Name of the unknown that stands for the pose of the reference member."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Block:
+    """Rows of one loop or contact: B against A, or B against where a joint's own values put it."""
+
+    name: str
+    part: Joint | ContactPart
+    selection: Selection
+    rows: slice
+    columns: Vector
+    signs: Vector
+    own: slice | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Equations:
+    """Values and derivatives of the closure equations at one state, in scaled units.
+
+    Attributes:
+        gaps: Residuals, metres / L and radians.
+        jacobian: rows x columns, unknowns in metres / L and radians.
+    """
+
+    gaps: Vector
+    jacobian: Matrix
+
+
+class ClosureProblem:
+    """The closure equations of a mechanism.
+
+    Args:
+        mechanism: The mechanism.
+        kept: Joints outside the kinematic tree whose values must be unknowns (those of couplings and
+            screws always are).
+        drives: Motors over several axes whose values must be unknowns.
+        member: Whether the pose of the reference member is an unknown.
+    """
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        kept: Iterable[str] = (),
+        drives: Iterable[str] = (),
+        *,
+        member: bool = False,
+    ) -> None:
+        self.mechanism, self.length = mechanism, mechanism.length
+        self.centre = reference_position(mechanism, {b.name: b.pose for b in mechanism.bodies})
+        tree = {joint.name for joint, _ in mechanism.tree}
+        self.couplings = _scalar_couplings(mechanism)
+        self.drives = [d for d in mechanism.drives if d.name in set(drives)]
+        wanted = {*kept, *_joints_of_axes(mechanism, self.couplings, self.drives)}
+        outside = [j for j in mechanism.all_joints if j.name not in tree]
+        own = [j for j in outside if not j.closure and (j.name in wanted or j.type == "screw")]
+        self.dependent = [j for j in outside if not j.closure and j not in own]
+        if member:
+            own.append(_member_joint(mechanism))
+        in_tree = [joint for joint, _ in mechanism.tree]
+        self.variables = Variables(mechanism, [*in_tree, *own], self.drives)
+        self._home = axis_values(mechanism, mechanism.home)
+        self._paths = self._body_paths()
+        self._blocks: list[_Block] = []
+        self._sources: list[str] = []
+        for joint in outside:
+            if joint not in self.dependent and not joint.closure:
+                self._add_block(joint, whole_pose(mechanism.space.translations), own=True)
+            else:
+                self._add_block(joint, joint_selection(mechanism.type_of(joint), joint.second_axis))
+        for contact in mechanism.contacts:
+            components = contact_components(contact.type, mechanism.space)
+            self._add_block(contact, contact_selection(components, mechanism.space.translations))
+        if member:
+            self._add_block(own[-1], whole_pose(mechanism.space.translations), own=True)
+        self._sources += [c.name for c in self.couplings] + [d.name for d in self.drives]
+        self.row_scale = self._row_scales()
+
+    @property
+    def columns(self) -> int:
+        """Number of unknown rates."""
+        return self.variables.columns
+
+    @property
+    def rows(self) -> int:
+        """Number of equations."""
+        return len(self._sources)
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """For every row the loop, contact, coupling or motor that gives it."""
+        return tuple(self._sources)
+
+    def _add_block(self, part: Joint | ContactPart, selection: Selection, own: bool = False) -> None:
+        start = len(self._sources)
+        self._sources += [part.name] * selection.count
+        signs: dict[int, int] = {}
+        for body, side in ((part.second, 1), (part.first, -1)):
+            for column, sign in self._paths[body]:
+                signs[column] = signs.get(column, 0) + side * sign
+        used = [column for column, sign in signs.items() if sign]
+        self._blocks.append(
+            _Block(
+                part.name,
+                part,
+                selection,
+                slice(start, start + selection.count),
+                np.array(used, dtype=int),
+                np.array([signs[column] for column in used], dtype=float),
+                self.variables.columns_of[part.name] if own else None,
+            )
+        )
+
+    def _body_paths(self) -> dict[str, tuple[tuple[int, int], ...]]:
+        """For every body the columns on its way from the ground, with signs."""
+        paths: dict[str, tuple[tuple[int, int], ...]] = {GROUND: ()}
+        for joint, forward in self.mechanism.tree:
+            here, there = (joint.first, joint.second) if forward else (joint.second, joint.first)
+            columns = self.variables.columns_of[joint.name]
+            sign = 1 if forward else -1
+            paths[there] = paths[here] + tuple((k, sign) for k in range(columns.start, columns.stop))
+        return paths
+
+    def _row_scales(self) -> Vector:
+        scale = np.ones(self.rows)
+        for block in self._blocks:
+            start = block.rows.start
+            scale[start : start + len(block.selection.linear)] = 1.0 / self.length
+        linear = axis_linear(self.mechanism)
+        row = self.rows - len(self.couplings) - len(self.drives)
+        for scalar in (*(c.rates for c in self.couplings), *(d.drives for d in self.drives)):
+            scale[row] = 1.0 / self.length if any(linear[axis] for axis in scalar) else 1.0
+            row += 1
+        return scale
+
+    def start(self, q: Configuration) -> Vector:
+        """The state of a configuration: all unknown values; the member's pose is the tree's."""
+        known = dict(q)
+        for drive in self.drives:
+            values = axis_values(self.mechanism, q)
+            known[drive.name] = np.array([sum(c * values[a] for a, c in drive.drives.items())])
+        if MEMBER in self.variables.columns_of:
+            poses = self.mechanism.body_poses(q)
+            joint = self.variables.joint[MEMBER]
+            there = poses[joint.second] @ joint.frame_on_second
+            ground = Pose.identity(self.mechanism.space.translations)
+            known[MEMBER] = values_between(self.mechanism.type_of(joint), ground, there, joint.second_axis)
+        return self.variables.gathered(known)
+
+    def poses(self, state: Vector) -> tuple[dict[str, Pose], dict[str, Pose]]:
+        """Poses of all bodies, and the motion of every joint that is an unknown."""
+        moved = {
+            joint.name: motion(kind, state[values], joint.lead, joint.second_axis)
+            for joint, kind, values in self.variables.joints
+        }
+        poses = {GROUND: Pose.identity(self.mechanism.space.translations)}
+        for joint, forward, before, after in self._steps:
+            step = moved[joint.name]
+            if forward:
+                poses[joint.second] = poses[joint.first] @ before @ step @ after
+            else:
+                poses[joint.first] = poses[joint.second] @ after @ step.inverse() @ before
+        return poses, moved
+
+    @cached_property
+    def _steps(self) -> list[tuple[Joint, bool, Pose, Pose]]:
+        """Tree joints with the constant poses before and after their motion."""
+        steps = []
+        for joint, forward in self.mechanism.tree:
+            one, two = joint.frame_on_first, joint.frame_on_second
+            steps.append((joint, forward, *((one, two.inverse()) if forward else (one.inverse(), two))))
+        return steps
+
+    def gaps(self, state: Vector) -> Vector:
+        """Residuals alone, scaled."""
+        poses, moved = self.poses(state)
+        gaps = np.zeros(self.rows)
+        for block in self._blocks:
+            gaps[block.rows] = gap_rows(block.selection, *self._ends(block, poses, moved))[0]
+        self._scalar_gaps(state, gaps)
+        return gaps * self.row_scale
+
+    def equations(self, state: Vector) -> Equations:
+        """Residuals and their Jacobian, scaled."""
+        poses, moved = self.poses(state)
+        twists = self._twists(poses, moved)
+        gaps = np.zeros(self.rows)
+        jacobian = np.zeros((self.rows, self.columns))
+        s = self.mechanism.space.translations
+        for block in self._blocks:
+            first, second = self._ends(block, poses, moved)
+            gaps[block.rows], rows = gap_rows(block.selection, first, second)
+            rows[:, s:] += rows[:, :s] @ moment_arm(second.position - self.centre)
+            jacobian[block.rows, block.columns] = (rows @ twists[:, block.columns]) * block.signs
+            if block.own is not None:
+                jacobian[block.rows, block.own] = -(rows @ twists[:, block.own])
+        self._scalar_gaps(state, gaps)
+        self._scalar_rows(state, jacobian)
+        scaled = self.row_scale[:, None] * jacobian * self.variables.column_scale
+        return Equations(gaps * self.row_scale, scaled)
+
+    def _ends(
+        self, block: _Block, poses: Mapping[str, Pose], moved: Mapping[str, Pose]
+    ) -> tuple[Pose, Pose]:
+        first = poses[block.part.first] @ block.part.frame_on_first
+        if block.own is not None:
+            first = first @ moved[block.name]
+        return first, poses[block.part.second] @ block.part.frame_on_second
+
+    def _twists(self, poses: Mapping[str, Pose], moved: Mapping[str, Pose]) -> Matrix:
+        """d x columns: twist at the centre, in ground axes, of every unknown axis."""
+        twists = np.zeros((self.mechanism.space.dimension, self.columns))
+        for joint, kind, _ in self.variables.joints:
+            if not kind.axes:
+                continue
+            first = poses[joint.first] @ joint.frame_on_first
+            second = first @ moved[joint.name]
+            columns = self.variables.columns_of[joint.name]
+            twists[:, columns] = axis_twists(
+                kind, first, second, joint.lead, joint.second_axis, self.centre
+            )
+        return twists
+
+    def _scalar_gaps(self, state: Vector, gaps: Vector) -> None:
+        if not (self.couplings or self.drives):
+            return
+        values = self.variables.axis_values(state)
+        row = self.rows - len(self.couplings) - len(self.drives)
+        for coupling in self.couplings:
+            gaps[row] = coupling.residual(values, self._home)
+            row += 1
+        for drive in self.drives:
+            gaps[row] = sum(c * values[a] for a, c in drive.drives.items()) - values[drive.name]
+            row += 1
+
+    def _scalar_rows(self, state: Vector, jacobian: Matrix) -> None:
+        if not (self.couplings or self.drives):
+            return
+        values = self.variables.axis_values(state)
+        column = self.variables.column
+        row = self.rows - len(self.couplings) - len(self.drives)
+        for coupling in self.couplings:
+            for axis, coefficient in coupling.coefficients(values, self._home).items():
+                jacobian[row, column[axis]] = coefficient
+            row += 1
+        for drive in self.drives:
+            for axis, coefficient in {**drive.drives, drive.name: -1.0}.items():
+                jacobian[row, column[axis]] = coefficient
+            row += 1
+
+    def configuration(self, state: Vector, near: Configuration) -> Configuration:
+        """The configuration of a state: values of joints outside the tree from where their bodies are.
+
+        Angles of those joints are unwound to the turn nearest to `near`.
+        """
+        values = {name: np.array(value) for name, value in near.items()}
+        for joint, _, where in self.variables.joints:
+            if joint.name in values:
+                values[joint.name] = state[where].copy()
+        if self.dependent:
+            poses, _ = self.poses(state)
+            for joint in self.dependent:
+                kind = self.mechanism.type_of(joint)
+                first = poses[joint.first] @ joint.frame_on_first
+                second = poses[joint.second] @ joint.frame_on_second
+                found = values_between(kind, first, second, joint.second_axis)
+                values[joint.name] = unwound(kind, found, near[joint.name])
+        return Configuration(values)
+
+
+def _scalar_couplings(mechanism: Mechanism) -> list[Coupling]:
+    """Couplings between axes that have scalar values; others constrain rates only."""
+    scalar = axis_values(mechanism, mechanism.home)
+    return [c for c in mechanism.couplings if all(axis in scalar for axis in c.axes)]
+
+
+def _joints_of_axes(
+    mechanism: Mechanism, couplings: Iterable[Coupling], drives: Iterable[Drive]
+) -> set[str]:
+    """Joints with an axis in a coupling or drive."""
+    joint_of = {
+        axis: joint.name
+        for joint in mechanism.all_joints
+        for axis in mechanism.type_of(joint).axis_names(joint.name)
+    }
+    axes = [axis for c in couplings for axis in c.axes] + [axis for d in drives for axis in d.drives]
+    return {joint_of[axis] for axis in axes}
+
+
+def _member_joint(mechanism: Mechanism) -> Joint:
+    """A free joint from the ground to the reference point: its values are the member's pose.
+
+    Raises:
+        MissingReferenceError: No reference member is named.
+    """
+    reference = mechanism.reference
+    if reference is None:
+        raise MissingReferenceError(body.name for body in mechanism.bodies)
+    identity = Pose.identity(mechanism.space.translations)
+    return Joint(MEMBER, "free", GROUND, reference.body, identity, Pose.at(reference.origin))
