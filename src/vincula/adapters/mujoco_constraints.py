@@ -38,6 +38,7 @@ class Constraints:
     Attributes:
         closures: Loop joints, known by their two frames.
         couplings: Couplings between joint axes.
+        tendons: Indices of the tendons that couplings use.
 
     Raises:
         UnsupportedFeatureError: An active equality that is neither connect, weld, joint, nor tendon
@@ -49,6 +50,7 @@ class Constraints:
         self._joint_names, self._coupling_names = set(names.joints), set[str]()
         self.closures: list[Joint] = []
         self.couplings: list[Coupling] = []
+        self.tendons: set[int] = set()
         disabled = bool(int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_EQUALITY))
         readers: dict[int, Callable[[int], None]] = {
             _CONNECT: self._connect,
@@ -140,6 +142,8 @@ class Constraints:
                     f"equality tendon {self._label(index)}: tendon {self._names.tendons[tendon]!r} runs "
                     "through space, so its length is no sum of joint values; supported are fixed tendons"
                 )
+            if tendon >= 0:
+                self.tendons.add(tendon)
             sides.append(terms)
         self._couple(index, sides[0], sides[1])
 

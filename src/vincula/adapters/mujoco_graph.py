@@ -49,6 +49,7 @@ def mechanism_of(
     motors = Motors(model, names, report)
     frames = site_frames(model, names)
     _record(model, names, tree, report)
+    _record_tendons(model, names, constraints.tendons | motors.tendons, report)
     return Mechanism(
         space=SPATIAL,
         bodies=tuple(tree.bodies),
@@ -95,6 +96,14 @@ def _record(model: Any, names: ModelNames, tree: Tree, report: LoadReport) -> No
         report.note(
             f"springs are not modelled: {listing(springs)} can move freely; hold a joint still by locking it"
         )
+
+
+def _record_tendons(model: Any, names: ModelNames, used: set[int], report: LoadReport) -> None:
+    for index, tendon in enumerate(names.tendons):
+        if index in used:
+            report.used("tendon", tendon, "its coefficients are those of a motor or coupling")
+        else:
+            report.ignored("tendon", tendon, "no motor or coupling uses it; its limits are not modelled")
     stretched = [tendon for index, tendon in enumerate(names.tendons) if model.tendon_stiffness[index] > 0]
     if stretched:
         report.note(f"springs of tendons are not modelled: {listing(stretched)}")

@@ -52,6 +52,11 @@ class Motors:
         """The active axes and drives, each once, in the order of the actuators."""
         return tuple(dict.fromkeys(self.axis_of.values()))
 
+    @property
+    def tendons(self) -> set[int]:
+        """Indices of the tendons that motors pull."""
+        return set(self._drive_of_tendon)
+
     def _add(self, index: int) -> None:
         name, kind = self._names.actuators[index], int(self._model.actuator_trntype[index])
         target = int(self._model.actuator_trnid[index][0])
