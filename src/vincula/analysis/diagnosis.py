@@ -128,8 +128,8 @@ def _indeterminate(model: LinearModel) -> list[str]:
         joints = _taking_part(model.scaled.passive_column * column[:n_p], model.passives)
         how = f"direction {components(twist / np.abs(twist).max(), model.twist_components)}"
         if model.motions is not None and model.frame == "ground axes":
-            words = motion_of_body(model, twist, model.motions.origin, model.ledger.subspace_doubt)
-            how = f"it {words} ({how})"
+            verb, path = motion_of_body(model, twist, model.motions.origin, model.ledger.subspace_doubt)
+            how = f"it can {verb} {path} ({how})"
         moving = joint_list(joints) if joints else "no joint moves"
         said.append(f"{model.reference!r} moves with all motors locked: {how}; {moving}.")
     return said
@@ -196,11 +196,11 @@ def _bodies(model: LinearModel, rates: Vector, twist: Vector) -> str:
     moving = [i for i, size in enumerate(sizes) if not negligible(float(size), float(sizes.max()), doubt)]
     if not moving:
         return ""
-    ways: dict[str, list[str]] = {}
+    ways: dict[tuple[str, str], list[str]] = {}
     for i in moving:
         how = motion_of_body(model, twists[:, i], motions.origin, doubt)
         ways.setdefault(how, []).append(motions.names[i])
     return "; ".join(
-        f"{'Body' if len(names) == 1 else 'Bodies'} {listing(names)} can move freely: {how}"
-        for how, names in ways.items()
+        f"{'Body' if len(names) == 1 else 'Bodies'} {listing(names)} can {verb} freely {path}"
+        for (verb, path), names in ways.items()
     )

@@ -120,12 +120,10 @@ class _Recipe:
 
 _RECIPES: dict[Kind, _Recipe] = {
     "kinematic": _Recipe(kinematic_relation, "twist", "rate", ("infinite", "finite", "zero", "undefined")),
-    "active force": _Recipe(force_relation, "wrench", "torque", ("finite", "zero", "undefined")),
-    "passive force": _Recipe(force_relation, "wrench", "torque", ("infinite", "finite", "undefined")),
-    "internal force": _Recipe(
-        internal_relation, "contact_force", "torque", ("infinite", "finite", "undefined")
-    ),
-    "dual force": _Recipe(force_relation, "wrench", "torque", ("finite", "undefined")),
+    "active force": _Recipe(force_relation, "wrench", "torque", ("finite", "zero")),
+    "passive force": _Recipe(force_relation, "wrench", "torque", ("infinite", "finite")),
+    "internal force": _Recipe(internal_relation, "contact_force", "torque", ("infinite", "finite")),
+    "dual force": _Recipe(force_relation, "wrench", "torque", ("finite",)),
 }
 
 

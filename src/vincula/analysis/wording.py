@@ -43,8 +43,8 @@ def components(values: Vector, names: Sequence[str]) -> str:
     return ", ".join(shown) or "nothing"
 
 
-def motion_of_body(model: LinearModel, twist: Vector, origin: Vector, doubt: float = 0.0) -> str:
-    """A rigid motion in words: a translation, a rotation about an axis, or a screw.
+def motion_of_body(model: LinearModel, twist: Vector, origin: Vector, doubt: float = 0.0) -> tuple[str, str]:
+    """A rigid motion in words, as verb and path: `turn`, `about the axis through ... along ...`.
 
     Args:
         model: For its dimension and characteristic length.
@@ -57,17 +57,17 @@ def motion_of_body(model: LinearModel, twist: Vector, origin: Vector, doubt: flo
     v, omega = twist[:s], twist[s:]
     speed, turning = float(np.linalg.norm(v)), float(np.linalg.norm(omega)) * length
     if negligible(turning, speed + turning, doubt):
-        return f"translates along {point(_unit(v))}"
+        return "translate", f"along {point(_unit(v))}"
     if s == 2:
         centre = origin + np.array([-v[1], v[0]]) / omega[0]
-        return f"turns about the point {point(centre)}"
+        return "turn", f"about the point {point(centre)}"
     square = float(omega @ omega)
     centre = origin + np.cross(omega, v) / square
     pitch = float(v @ omega) / square
-    axis = f"the axis through {point(centre)} along {point(_unit(omega))}"
+    axis = f"about the axis through {point(centre)} along {point(_unit(omega))}"
     if negligible(abs(pitch), length + speed * length / turning, doubt):
-        return f"turns about {axis}"
-    return f"screws about {axis} with {number(pitch)} m per rad"
+        return "turn", axis
+    return "screw", f"{axis}, {number(pitch)} m per rad"
 
 
 def _unit(vector: Vector) -> Vector:
