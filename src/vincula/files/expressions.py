@@ -1,0 +1,210 @@
+"""Numbers written as expressions: `$l/2`, `2*pi/3`, `$r*cos($alpha)`.
+
+A small grammar with its own reader; nothing is ever given to Python to evaluate:
+
+    sum     = product {("+" | "-") product}
+    product = signed {("*" | "/") signed}
+    signed  = {"+" | "-"} atom
+    atom    = number | "pi" | "$" name | function "(" sum ")" | "(" sum ")"
+
+Every value carries how far it may be off because of typed digits, to first order.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, NoReturn
+
+from vincula.errors import ModelError, listing
+from vincula.files.digits import half_unit
+from vincula.files.problems import shown, suggestion
+from vincula.files.tree import number
+
+_LONGEST: Final = 1000
+_DEEPEST: Final = 64
+_TOKEN: Final = re.compile(
+    r"\s*(?:(?P<number>[0-9.][0-9.]*(?:[eE][-+]?[0-9]+)?)|(?P<parameter>\$[A-Za-z_][A-Za-z0-9_]*)"
+    r"|(?P<word>[A-Za-z_][A-Za-z0-9_]*)|(?P<sign>[-+*/()]))"
+)
+FUNCTIONS: Final = ("sin", "cos", "tan", "sqrt")
+"""Names of the functions in expressions; angles in radians."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A number and how far it may be off.
+
+    Attributes:
+        value: The number.
+        half_unit: Half a unit of its last typed digit, carried through expressions; 0 when exact.
+    """
+
+    value: float
+    half_unit: float = 0.0
+
+
+class ExpressionError(ModelError):
+    """An expression that cannot be read or has no finite value.
+
+    Attributes:
+        reason: What is wrong, without the expression itself.
+        position: Index of the character where it was found.
+    """
+
+    def __init__(self, text: str, reason: str, position: int) -> None:
+        self.reason, self.position = reason, position
+        super().__init__(f"expression {shown(text)}: {reason}")
+
+
+def is_expression(text: str) -> bool:
+    """Whether a text was meant as an expression: it uses a parameter, pi or a function."""
+    return "$" in text or bool(re.search(r"\b(?:pi|sin|cos|tan|sqrt)\b", text))
+
+
+def evaluate(text: str, parameters: Mapping[str, Measured]) -> Measured:
+    """The value of an expression.
+
+    Args:
+        text: The expression.
+        parameters: Values of the parameters that it may use.
+
+    Raises:
+        ExpressionError: Not in the grammar, an unknown parameter, or no finite value.
+    """
+    if len(text) > _LONGEST:
+        raise ExpressionError(text, f"longer than {_LONGEST} characters", _LONGEST)
+    reader = _Reader(text, parameters)
+    result = reader.whole()
+    if not (math.isfinite(result.value) and math.isfinite(result.half_unit)):
+        raise ExpressionError(text, "its value is too large", 0)
+    return result
+
+
+class _Reader:
+    def __init__(self, text: str, parameters: Mapping[str, Measured]) -> None:
+        self._text, self._parameters = text, parameters
+        self._at = 0
+        self._depth = 0
+        self._kind = self._symbol = ""
+        self._start = 0
+        self._advance()
+
+    def whole(self) -> Measured:
+        result = self._sum()
+        if self._symbol:
+            self._refuse(f"expected an operator, got {shown(self._symbol)}")
+        return result
+
+    def _advance(self) -> None:
+        match = _TOKEN.match(self._text, self._at)
+        if match is None:
+            rest = self._text[self._at :].lstrip()
+            self._start = len(self._text) - len(rest)
+            self._kind = self._symbol = ""
+            if rest:
+                self._refuse(
+                    f"{shown(rest[0])} is not in the grammar (+ - * / ( ) numbers $names "
+                    f"pi {' '.join(FUNCTIONS)})"
+                )
+            return
+        self._kind = match.lastgroup or ""
+        self._symbol = match[self._kind]
+        self._start, self._at = match.start(self._kind), match.end()
+
+    def _sum(self) -> Measured:
+        left = self._product()
+        while self._symbol in ("+", "-"):
+            sign = 1.0 if self._symbol == "+" else -1.0
+            self._advance()
+            right = self._product()
+            left = Measured(left.value + sign * right.value, left.half_unit + right.half_unit)
+        return left
+
+    def _product(self) -> Measured:
+        left = self._signed()
+        while self._symbol in ("*", "/"):
+            operator, start = self._symbol, self._start
+            self._advance()
+            right = self._signed()
+            if operator == "*":
+                off = abs(left.value) * right.half_unit + abs(right.value) * left.half_unit
+                left = Measured(left.value * right.value, off)
+                continue
+            if right.value == 0.0:
+                raise ExpressionError(self._text, "division by zero", start)
+            quotient = left.value / right.value
+            left = Measured(quotient, (left.half_unit + abs(quotient) * right.half_unit) / abs(right.value))
+        return left
+
+    def _signed(self) -> Measured:
+        sign = 1.0
+        while self._symbol in ("+", "-"):
+            sign = -sign if self._symbol == "-" else sign
+            self._advance()
+        atom = self._atom()
+        return Measured(sign * atom.value, atom.half_unit)
+
+    def _atom(self) -> Measured:
+        kind, symbol = self._kind, self._symbol
+        if kind == "number":
+            found = number(symbol)
+            if found is None:
+                self._refuse(f"{shown(symbol)} is no plain decimal number")
+            self._advance()
+            return Measured(float(found), half_unit(symbol))
+        if kind == "parameter":
+            name = symbol[1:]
+            if name not in self._parameters:
+                hint = suggestion(name, self._parameters) or "; no parameters are declared"
+                self._refuse(f"no parameter is named {shown(name)}{hint}")
+            self._advance()
+            return self._parameters[name]
+        if kind == "word":
+            return self._word(symbol)
+        if symbol == "(":
+            return self._parenthesis()
+        return self._refuse("ends too early" if not symbol else f"expected a value, got {shown(symbol)}")
+
+    def _word(self, word: str) -> Measured:
+        if word == "pi":
+            self._advance()
+            return Measured(math.pi)
+        if word not in FUNCTIONS:
+            dollar = f"; a parameter is written ${word}" if word in self._parameters else ""
+            self._refuse(f"{shown(word)} is not known: {listing(('pi', *FUNCTIONS))}{dollar}")
+        start = self._start
+        self._advance()
+        if self._symbol != "(":
+            self._refuse(f"expected '(' after {word}")
+        argument = self._parenthesis()
+        x, off = argument.value, argument.half_unit
+        if word == "sqrt":
+            if x < 0.0:
+                raise ExpressionError(self._text, f"square root of {x:g}", start)
+            root = math.sqrt(x)
+            return Measured(root, off / (2.0 * root) if root > 0.0 else math.sqrt(off))
+        if not math.isfinite(x):
+            raise ExpressionError(self._text, "its value is too large", start)
+        if word == "sin":
+            return Measured(math.sin(x), abs(math.cos(x)) * off)
+        if word == "cos":
+            return Measured(math.cos(x), abs(math.sin(x)) * off)
+        return Measured(math.tan(x), (1.0 + math.tan(x) ** 2) * off)
+
+    def _parenthesis(self) -> Measured:
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            self._refuse(f"more than {_DEEPEST} parentheses inside each other")
+        self._advance()
+        inner = self._sum()
+        if self._symbol != ")":
+            self._refuse("expected ')'")
+        self._depth -= 1
+        self._advance()
+        return inner
+
+    def _refuse(self, reason: str) -> NoReturn:
+        raise ExpressionError(self._text, reason, self._start)
