@@ -51,17 +51,17 @@ def _as_dictionary(entry: Entry) -> dict[str, Any]:
 
 
 def _list_page(entries: tuple[Entry, ...]) -> Page:
-    from vincula.cli.page import Column, Page
+    from vincula.cli.page import Column, Page, Table
 
     page = Page()
     page.heading("Examples", "use example:NAME wherever a FILE is asked for")
-    page.table([Column("name"), Column("what it is", fold=True)], [[e.name, e.title] for e in entries])
+    page.table(Table([Column("name"), Column("what it is", fold=True)], [[e.name, e.title] for e in entries]))
     page.sentence("More about one: vincula examples NAME")
     return page
 
 
 def _entry_page(entry: Entry) -> Page:
-    from vincula.cli.page import Column, Page
+    from vincula.cli.page import Column, Page, Table
 
     page = Page()
     page.heading(f"example:{entry.name}", entry.title)
@@ -69,10 +69,8 @@ def _entry_page(entry: Entry) -> Page:
     page.sentence(f"Source: {entry.reference}.")
     if entry.parameters:
         page.heading("Parameters", f"change one with --set {entry.parameters[0].name}=VALUE")
-        page.table(
-            [Column("name"), Column("default", justify="right"), Column("what it is", fold=True)],
-            [[p.name, p.default, p.meaning] for p in entry.parameters],
-        )
+        columns = [Column("name"), Column("default", justify="right"), Column("what it is", fold=True)]
+        page.table(Table(columns, [[p.name, p.default, p.meaning] for p in entry.parameters]))
     page.heading("Try")
     for command in ("inspect", "analyze"):
         page.sentence(f"vincula {command} example:{entry.name}")

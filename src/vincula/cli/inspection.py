@@ -14,9 +14,7 @@ from vincula.cli.output import print_json, warnings_on_stderr
 @together(mechanism_options, active_option)
 @click.option("--all", "everything", is_flag=True, help="Every joint and loop, however many there are.")
 @output_options
-def inspect_command(
-    file: str, active: str | None, everything: bool, as_json: bool, **options: Any
-) -> None:
+def inspect_command(file: str, active: str | None, everything: bool, as_json: bool, **options: Any) -> None:
     """What is in FILE: bodies, joints, loops, motors, mobility, and what the reader made of it.
 
     FILE is a path or example:NAME. An open loop or a missing reference member is shown, not refused.

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any, Final
 
-from vincula.cli.page import Column, Page, number, plural, point
+from vincula.cli.page import Column, Page, Table, number, plural, point
 from vincula.errors import listing
 
 MOST_ROWS: Final = 12
@@ -97,22 +97,18 @@ def _connections(page: Page, facts: Facts, most: int) -> None:
     """Joints and contacts in one table; fixed joints only where there is nothing else."""
     joints = [joint for joint in facts["joints"] if joint["type"] != "fixed"] or facts["joints"]
     rows = [[j["name"], j["type"], " - ".join(j["between"]), _values(j), _roles(j)] for j in joints]
-    rows += [
-        [c["name"], c["type"], " - ".join(c["between"]), "", "contact"] for c in facts["contacts"]
-    ]
+    rows += [[c["name"], c["type"], " - ".join(c["between"]), "", "contact"] for c in facts["contacts"]]
     if not rows:
         return
     page.heading("Joints and contacts" if facts["contacts"] else "Joints")
-    page.table(
-        [
-            Column("name"),
-            Column("type"),
-            Column("connects", fold=True),
-            Column("value", justify="right"),
-            Column("role", fold=True),
-        ],
-        rows[:most],
-    )
+    columns = [
+        Column("name"),
+        Column("type"),
+        Column("connects", fold=True),
+        Column("value", justify="right"),
+        Column("role", fold=True),
+    ]
+    page.table(Table(columns, rows[:most]))
     left_out, fixed = len(rows) - len(rows[:most]), len(facts["joints"]) - len(joints)
     more = [f"{left_out} more (--all shows them)"] if left_out else []
     more += [f"{plural(fixed, 'fixed joint')} not listed"] if fixed else []
@@ -177,7 +173,7 @@ def _load(page: Page, load: Facts, everything: bool) -> None:
     ]
     if rows:
         numbers = [Column(title, justify="right") for title in ("in all", "used", "ignored", "repaired")]
-        page.table([Column("what"), *numbers], rows)
+        page.table(Table([Column("what"), *numbers], rows))
     for text in _reasons(load, everything):
         page.sentence(text)
     for note in load["notes"]:

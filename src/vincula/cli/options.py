@@ -25,9 +25,7 @@ def together(*decorators: Callable[[Any], Any]) -> Callable[[Function], Function
 def once(ctx: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> str | None:
     """The value of an option that may be given once (click alone would keep the last one silently)."""
     if len(value) > 1:
-        raise click.BadParameter(
-            "given more than once; write one list with commas", ctx=ctx, param=parameter
-        )
+        raise click.BadParameter("given more than once; write one list with commas", ctx=ctx, param=parameter)
     return value[0] if value else None
 
 

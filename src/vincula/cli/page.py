@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table as RichTable
 
 INDENT: Final = 2
 """Blanks before everything but headings."""
@@ -27,6 +28,36 @@ class Column:
     title: str
     justify: Literal["left", "right"] = "left"
     fold: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Columns and rows of texts.
+
+    Attributes:
+        columns: The columns.
+        rows: The rows, a text a column.
+    """
+
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[str]]
+
+    def drawn(self) -> RichTable:
+        """The table as the terminal library wants it."""
+        from rich.box import SIMPLE_HEAD
+        from rich.table import Table as RichTable
+
+        table = RichTable(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
+        for column in self.columns:
+            table.add_column(
+                column.title,
+                justify=column.justify,
+                no_wrap=not column.fold,
+                overflow="fold" if column.fold else "ellipsis",
+            )
+        for row in self.rows:
+            table.add_row(*row)
+        return table
 
 
 class Page:
@@ -75,9 +106,9 @@ class Page:
         shown = [(label, text) for label, text in rows if text]
 
         def print_facts(console: Console) -> None:
-            from rich.table import Table
+            from rich.table import Table as RichTable
 
-            table = Table.grid(padding=(0, 2))
+            table = RichTable.grid(padding=(0, 2))
             table.add_column(no_wrap=True, style="dim")
             table.add_column(overflow="fold")
             for label, text in shown:
@@ -86,25 +117,20 @@ class Page:
 
         self._parts.append(print_facts)
 
-    def table(self, columns: Sequence[Column], rows: Iterable[Sequence[str]]) -> None:
-        """A table with a line under its head."""
-        body = [list(row) for row in rows]
+    def table(self, *choices: Table) -> None:
+        """A table with a line under its head: the first of the choices that fits the width, else the last."""
 
         def print_table(console: Console) -> None:
-            from rich.box import SIMPLE_HEAD
-            from rich.table import Table
+            from rich.measure import Measurement
 
-            table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
-            for column in columns:
-                table.add_column(
-                    column.title,
-                    justify=column.justify,
-                    no_wrap=not column.fold,
-                    overflow="fold" if column.fold else "ellipsis",
-                )
-            for row in body:
-                table.add_row(*row)
-            _print_indented(console, table)
+            drawn = [choice.drawn() for choice in choices]
+            room = console.width - INDENT
+            fitting = (
+                table
+                for table in drawn
+                if Measurement.get(console, console.options.update(max_width=10_000), table).maximum <= room
+            )
+            _print_indented(console, next(fitting, drawn[-1]))
 
         self._parts.append(print_table)
 
@@ -141,20 +167,32 @@ def number(value: float, digits: int = 5) -> str:
     return f"{0.0 if value == 0 else value:.{digits}g}"
 
 
-def combination(values: Sequence[float], names: Sequence[str], most: int = 8) -> str:
-    """A vector as a sum over its components: `0.894 vy - 0.447 wz`; parts below a thousandth left out."""
-    largest = max((abs(value) for value in values), default=0.0)
-    if largest == 0.0:
+def combination(values: Iterable[float], names: Sequence[str], width: int = 10_000, most: int = 12) -> str:
+    """A vector as a sum over its components: `0.894 vy - 0.447 wz`.
+
+    Args:
+        values: The components.
+        names: Their names.
+        width: Lines are broken between terms so that they are at most this long.
+        most: Terms before the rest is only counted.  Terms below a thousandth of the largest are left out.
+    """
+    pairs = list(zip(values, names, strict=True))
+    largest = max((abs(value) for value, _ in pairs), default=0.0)
+    kept = [(value, name) for value, name in pairs if value and abs(value) >= 1e-3 * largest]
+    if not kept:
         return "0"
-    kept = [
-        (value, name) for value, name in zip(values, names, strict=True) if abs(value) >= 1e-3 * largest
-    ]
-    texts: list[str] = []
+    lines = [""]
     for value, name in kept[:most]:
-        sign = ("- " if value < 0 else "+ ") if texts else ("-" if value < 0 else "")
-        texts.append(f"{sign}{abs(value):.3g} {name}")
+        sign = "- " if value < 0 else "+ "
+        if lines == [""]:
+            sign = "-" if value < 0 else ""
+        term = f"{sign}{abs(value):.3g} {name}"
+        if lines[-1] and len(lines[-1]) + 1 + len(term) > width:
+            lines.append(term)
+        else:
+            lines[-1] += f" {term}" if lines[-1] else term
     more = len(kept) - most
-    return " ".join(texts) + (f" ... ({more} more)" if more > 0 else "")
+    return "\n".join(lines) + (f" ... ({more} more)" if more > 0 else "")
 
 
 def point(values: Iterable[float]) -> str:

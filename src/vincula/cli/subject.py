@@ -103,9 +103,7 @@ def with_reference(mechanism: Mechanism, text: str | None, axes: str | None) -> 
             return mechanism
         return replace(mechanism, reference=replace(old, axes=chosen))
     body, origin, frame = split_reference(mechanism, text.strip())
-    return _usage(
-        "--reference", lambda: mechanism.with_reference(body, origin, frame=frame, axes=chosen)
-    )
+    return _usage("--reference", lambda: mechanism.with_reference(body, origin, frame=frame, axes=chosen))
 
 
 def split_reference(mechanism: Mechanism, text: str) -> tuple[str, list[float] | None, str | None]:

@@ -18,6 +18,7 @@ from vincula.labels import BodyMotions, Column, Cut, Row, Uncertainty
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import axis_twists, blocked_directions
 from vincula.mechanism.kinematics import body_poses, part_frames, reference_position
+from vincula.mechanism.motor_weights import weights_of_motors
 from vincula.mechanism.parts import GROUND, ContactPart
 from vincula.mechanism.reduction import CutJoint, Reduction
 from vincula.mechanism.residuals import CLOSED, axis_linear, axis_values, loop_residuals
@@ -68,7 +69,7 @@ def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
         frame="ground axes" if reference.axes == "ground" else f"axes of {reference.body}",
         cuts=tuple(builder.cuts),
         notes=(*mechanism.notes, *mechanism.reduction.notes),
-        weights=mechanism.weights,
+        weights=weights_of_motors(mechanism),
         motions=builder.motions([*active, *passive]),
     )
 

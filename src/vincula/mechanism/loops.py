@@ -39,9 +39,7 @@ def independent_loops(mechanism: Mechanism) -> tuple[Loop, ...]:
     edges = _edges(mechanism)
     way = _spanning_ways([body.name for body in mechanism.bodies], edges)
     walked = {name for steps in way.values() for name, _ in steps}
-    return tuple(
-        _loop(edge, way[edge.first], way[edge.second]) for edge in edges if edge.name not in walked
-    )
+    return tuple(_loop(edge, way[edge.first], way[edge.second]) for edge in edges if edge.name not in walked)
 
 
 def _edges(mechanism: Mechanism) -> list[Joint | ContactPart]:
@@ -69,9 +67,7 @@ def _spanning_ways(bodies: list[str], edges: list[Joint | ContactPart]) -> dict[
     return way
 
 
-def _grow(
-    way: dict[str, tuple[Step, ...]], reached: list[str], edges: list[Joint | ContactPart]
-) -> None:
+def _grow(way: dict[str, tuple[Step, ...]], reached: list[str], edges: list[Joint | ContactPart]) -> None:
     neighbours: dict[str, list[tuple[str, str]]] = {}
     for edge in edges:
         neighbours.setdefault(edge.first, []).append((edge.name, edge.second))

@@ -1,0 +1,99 @@
+"""Which choice of motors is best: designs of one mechanism, ranked by one number."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from vincula.analysis import indices
+from vincula.analysis.ellipsoid import Ellipsoid
+from vincula.analysis.indices import Part
+from vincula.analysis.result import Analysis
+from vincula.errors import UnknownNameError
+
+CRITERIA: Final = {
+    "kinematic": "smallest finite kinematic efficiency",
+    "active-force": "smallest finite active force efficiency",
+    "passive-force": "smallest finite passive force efficiency",
+    "internal-force": "smallest finite internal force efficiency",
+    "dual-force": "smallest finite dual force efficiency",
+    "yoshikawa": "Yoshikawa's volume: product of the semi-axes of the kinematic ellipsoid",
+    "inverse-condition": "shortest over longest semi-axis of the kinematic ellipsoid",
+    "isotropy": "geometric over arithmetic mean of the squared semi-axes of the kinematic ellipsoid",
+    "smallest-singular-value": "shortest semi-axis of the kinematic ellipsoid",
+}
+"""What designs can be ranked by; of all of them more is better."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RankedDesign:
+    """One design in its place.
+
+    Attributes:
+        analysis: The analysis of the design.
+        index: What it is ranked by; None where it has no such number.
+        reason: Why it stands behind the others; empty for a design that is ranked by its number.
+    """
+
+    analysis: Analysis
+    index: float | None
+    reason: str
+
+
+def ranked_designs(
+    analyses: Iterable[Analysis], criterion: str = "kinematic", on: Part = "all"
+) -> tuple[RankedDesign, ...]:
+    """Designs from best to worst; equal ones stay in the order given.
+
+    Designs that leave the member indeterminate come last: with motors locked it still moves, and no
+    efficiency makes up for that.  Before them come those for which the number does not exist.
+
+    Args:
+        analyses: The designs.
+        criterion: One of `CRITERIA`.
+        on: For the indices: translation, rotation or all components.
+
+    Raises:
+        UnknownNameError: No such criterion.
+        MixedUnitsError: An index over metres and radians with weights that nobody chose.
+    """
+    if criterion not in CRITERIA:
+        raise UnknownNameError("criterion", criterion, CRITERIA)
+    return tuple(sorted((_judged(one, criterion, on) for one in analyses), key=_place))
+
+
+def _place(design: RankedDesign) -> tuple[int, float]:
+    if design.analysis.ledger.summary.indeterminacy:
+        return 2, -(design.index or 0.0)
+    return (1, 0.0) if design.index is None else (0, -design.index)
+
+
+def _judged(analysis: Analysis, criterion: str, on: Part) -> RankedDesign:
+    index = _index(analysis, criterion, on)
+    if math.isnan(index):
+        return RankedDesign(analysis, None, _reason(analysis) or f"it has no {CRITERIA[criterion]}")
+    return RankedDesign(analysis, index, _reason(analysis))
+
+
+def _reason(analysis: Analysis) -> str:
+    count = analysis.ledger.summary.indeterminacy
+    if not count:
+        return ""
+    ways = "1 way" if count == 1 else f"{count} ways"
+    return f"the member is indeterminate: it moves in {ways} with all motors locked"
+
+
+def _index(analysis: Analysis, criterion: str, on: Part) -> float:
+    """The number of a design; NaN where it has none."""
+    ellipsoids: dict[str, Ellipsoid] = {one.kind.replace(" ", "-"): one for one in analysis.ellipsoids}
+    if criterion in ellipsoids:
+        return min((float(value) for value in ellipsoids[criterion].finite), default=math.nan)
+    function = {
+        "yoshikawa": indices.yoshikawa_volume,
+        "inverse-condition": indices.inverse_condition_number,
+        "isotropy": indices.isotropy,
+        "smallest-singular-value": indices.smallest_singular_value,
+    }[criterion]
+    return function(analysis.kinematic, on)
