@@ -1,0 +1,239 @@
+"""Whole figures: panels, titles, legend and notes on a sheet of fixed size."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from vincula.arrays import Matrix
+from vincula.spatial.space import PLANAR
+from vincula.view import layout, style
+from vincula.view.drawables import Role, Scene
+from vincula.view.layout import Grid, Window
+from vincula.view.planar import PlanarPanel
+from vincula.view.shapes import EllipsoidShape
+from vincula.view.spatial import SpatialPanel
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """One panel of a figure.
+
+    Attributes:
+        scene: The mechanism.
+        shape: The ellipsoid at its reference point; None for the mechanism alone.
+        header: A line above the panel's title that names its row; empty for none.
+    """
+
+    scene: Scene
+    shape: EllipsoidShape | None
+    header: str = ""
+
+    @property
+    def title(self) -> tuple[str, ...]:
+        """Efficiencies and unbounded direction, a line each."""
+        if self.shape is None:
+            return ()
+        lines = (style.efficiencies_text(self.shape), style.unbounded_text(self.shape))
+        return tuple(line for line in lines if line)
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """How a figure is laid out.
+
+    Attributes:
+        width: Width of the figure [inch].
+        columns: Panels side by side.
+        names: Whether joints are named.
+        direction: Elevation and azimuth of the view of a spatial mechanism [deg].
+    """
+
+    width: float
+    columns: int
+    names: bool
+    direction: tuple[float, float]
+
+
+def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
+    """The figure of some panels, row by row; all of them show the same window at the same scale."""
+    planar = panels[0].scene.space is PLANAR
+    shapes = [panel.shape for panel in panels if panel.shape is not None]
+    points = layout.stacked([block for p in panels for block in _points(p)])
+    left = layout.LEFT if planar else layout.RIGHT
+    panel_width = layout.panel_width(sheet.width, sheet.columns, left)
+    seen = layout.window(points, panel_width) if planar else None
+    handles = _handles(panels)
+    foot_notes = layout.wrapped(style.note(shapes, planar), sheet.width - 0.2)
+    legend_rows = -(-len(handles) // _legend_columns(handles, sheet.width))
+    header = any(panel.header for panel in panels)
+    grid = Grid(
+        rows=-(-len(panels) // sheet.columns),
+        columns=sheet.columns,
+        width=sheet.width,
+        panel=panel_width,
+        height=seen.height if seen is not None else 0.95 * panel_width,
+        title=0.05 + layout.TITLE_LINE * (max(bool(shapes) + len(p.title) for p in panels) + 1.3 * header),
+        left=left,
+        below=layout.BELOW_PANELS if planar else 0.04,
+        between=layout.GAP,
+        head=0.04,
+        foot=0.06 + layout.LEGEND_LINE * legend_rows + layout.NOTE_LINE * len(foot_notes),
+    )
+    figure = Figure(figsize=grid.size)
+    for index in range(len(panels)):
+        _draw_panel(figure, grid, index, panels, seen, points, sheet)
+    _draw_foot(figure, grid, handles, foot_notes)
+    return figure
+
+
+def _points(panel: Panel) -> list[Matrix]:
+    return [panel.scene.points] + ([panel.shape.points] if panel.shape is not None else [])
+
+
+def _draw_panel(
+    figure: Figure,
+    grid: Grid,
+    index: int,
+    panels: Sequence[Panel],
+    seen: Window | None,
+    points: Matrix,
+    sheet: Sheet,
+) -> None:
+    panel, count = panels[index], len(panels)
+    row, column = divmod(index, grid.columns)
+    box = grid.box(row, column)
+    if seen is not None:
+        axes = figure.add_axes(box)
+        PlanarPanel(axes, seen.low, seen.high, seen.points_per_metre).draw(
+            panel.scene, panel.shape, names=sheet.names
+        )
+        _planar_axes(axes, first_column=column == 0, last_row=index + grid.columns >= count)
+    else:
+        axes = figure.add_axes(box, projection="3d", proj_type="ortho")
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        half = 0.5 * np.ptp(points, axis=0) + 0.04 * panel.scene.size
+        SpatialPanel(axes, centre - half, centre + half, panel.scene.size).draw(
+            panel.scene, panel.shape, names=sheet.names
+        )
+        _spatial_axes(axes, sheet.direction)
+    letter = string.ascii_lowercase[index % 26] if count > 1 else ""
+    _draw_title(figure, grid, box, panel, letter, max(len(p.title) for p in panels))
+
+
+def _planar_axes(axes: Axes, first_column: bool, last_row: bool) -> None:
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+    axes.tick_params(labelbottom=last_row, labelleft=first_column, pad=2)
+    if last_row:
+        axes.set_xlabel("x [m]", labelpad=1)
+    if first_column:
+        axes.set_ylabel("y [m]", labelpad=1)
+
+
+def _spatial_axes(axes: Axes3D, direction: tuple[float, float]) -> None:
+    axes.view_init(elev=direction[0], azim=direction[1])
+    axes.set_xlabel("x [m]", labelpad=-9)
+    axes.set_ylabel("y [m]", labelpad=-9)
+    axes.set_zlabel("z [m]", labelpad=-9)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+    axes.tick_params(pad=-4, labelsize=6)
+
+
+def _draw_title(
+    figure: Figure, grid: Grid, box: tuple[float, float, float, float], panel: Panel, letter: str, lines: int
+) -> None:
+    """Up to four lines above a panel: header, name with scale, efficiencies, unbounded direction."""
+    height = grid.size[1]
+    x, top = box[0], box[1] + box[3] + 0.04 / height
+    step = layout.TITLE_LINE / height
+    for k, line in enumerate(panel.title):
+        figure.text(x, top + (lines - 1 - k) * step, line, fontsize=6.5, va="bottom")
+    if panel.shape is not None:
+        y = top + lines * step
+        kind = style.KINDS[panel.shape.kind]
+        name = f"({letter}) {kind.short}" if letter else kind.short
+        figure.text(x, y, name, fontsize=7, fontweight="bold", color=kind.colour, va="bottom")
+        figure.text(x + box[2], y, style.scale_text(panel.shape), fontsize=6.5, ha="right", va="bottom")
+    if panel.header:
+        y = box[1] + box[3] + (grid.title - 1.15 * layout.TITLE_LINE) / height
+        figure.text(x, y, panel.header, fontsize=7.5, fontweight="bold", va="bottom")
+
+
+def _draw_foot(figure: Figure, grid: Grid, handles: Sequence[Line2D], notes: Sequence[str]) -> None:
+    height = grid.size[1]
+    figure.legend(
+        handles=list(handles),
+        loc="lower center",
+        bbox_to_anchor=(0.5, (0.04 + layout.NOTE_LINE * len(notes)) / height),
+        ncols=_legend_columns(handles, grid.width),
+        frameon=False,
+        fontsize=6.5,
+        handletextpad=0.4,
+        columnspacing=1.2,
+        borderpad=0.0,
+        borderaxespad=0.0,
+        labelspacing=0.35,
+    )
+    for k, line in enumerate(reversed(notes)):
+        y = (0.04 + layout.NOTE_LINE * k) / height
+        figure.text(0.1 / grid.width, y, line, fontsize=6, color="#444444")
+
+
+def _legend_columns(handles: Sequence[Line2D], width: float) -> int:
+    """Columns of the legend that fit the width, counted by the longest text."""
+    longest = max((len(str(handle.get_label())) for handle in handles), default=1)
+    return max(1, min(len(handles), int(72.0 * width / (3.7 * longest + 26.0))))
+
+
+def _handles(panels: Sequence[Panel]) -> list[Line2D]:
+    """One legend entry for every symbol that appears."""
+    joints: dict[tuple[str, Role], None] = {}
+    for panel in panels:
+        joints |= dict.fromkeys((m.type, m.role) for m in panel.scene.joints if m.type != "fixed")
+    ordered = sorted(joints, key=lambda key: (list(style.ROLE_WORDS).index(key[1]), key[0]))
+    handles = [
+        _handle(
+            f"{kind}, {style.ROLE_WORDS[role]}",
+            marker=style.JOINT_MARKERS[kind],
+            markersize=5.4,
+            markerfacecolor=style.FILL[role],
+            markeredgecolor=style.INK,
+        )
+        for kind, role in ordered
+    ]
+    types = dict.fromkeys(mark.type for panel in panels for mark in panel.scene.contacts)
+    if types:
+        handles.append(
+            _handle(
+                f"contact ({', '.join(types)})",
+                marker="^",
+                markersize=5.0,
+                markerfacecolor="white",
+                markeredgecolor=style.INK,
+            )
+        )
+    reference = panels[0].scene.reference
+    if reference is not None:
+        handles.append(Line2D([], [], color=style.MEMBER, lw=2.6, label=f"member: {reference.body}"))
+        handles.append(_handle("reference point", marker="+", markersize=6.0, markeredgecolor="black"))
+    if any(panel.shape is not None and panel.shape.unbounded for panel in panels):
+        handles.append(Line2D([], [], color=style.INK, lw=1.0, ls=(0, (4, 2.2)), label="unbounded line"))
+    return handles
+
+
+def _handle(label: str, **marker: object) -> Line2D:
+    return Line2D([], [], linestyle="none", markeredgewidth=0.9, label=label, **marker)  # type: ignore[arg-type]

@@ -1,0 +1,139 @@
+"""One panel of a spatial figure: the mechanism in an orthographic view, with at most one ellipsoid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+from vincula.view import style
+from vincula.view.drawables import JointMark, Scene
+from vincula.view.shapes import EllipsoidShape
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+MARKER = {"motor": 5.0, "driven": 4.4, "passive": 4.4, "locked": 4.4}
+"""Diameter of a joint symbol [points]."""
+
+
+class SpatialPanel:
+    """Draws on 3-D axes; what must stay visible is drawn last, whatever lies before it.
+
+    Args:
+        axes: Where to draw; limits and view are set here.
+        low: Lower corner of the cube that is shown [m].
+        high: Upper corner [m].
+        size: Size of the mechanism, for symbols that have a length [m].
+    """
+
+    def __init__(self, axes: Axes3D, low: Vector, high: Vector, size: float) -> None:
+        self.axes, self.size = axes, size
+        self.low = low
+        axes.computed_zorder = False
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        axes.set_zlim(low[2], high[2])
+        axes.set_box_aspect(tuple(high - low))
+
+    def draw(self, scene: Scene, shape: EllipsoidShape | None, *, names: bool) -> None:
+        """Ground, mechanism, ellipsoid, and the reference point above them all."""
+        self._draw_grounds(scene)
+        self._draw_links(scene)
+        self._draw_joints(scene)
+        self._draw_contacts(scene)
+        if shape is not None:
+            self._draw_shape(shape)
+        if scene.reference is not None:
+            self.axes.plot(*scene.reference.at[:, None], "+", color="black", ms=7, mew=1.1, zorder=20)
+        if names:
+            for mark in scene.joints:
+                x, y, z = mark.at + 0.03 * self.size
+                self.axes.text(x, y, z, mark.name, fontsize=6, color=style.INK, zorder=21)
+
+    def _draw_grounds(self, scene: Scene) -> None:
+        feet = np.array([ground.at for ground in scene.grounds]).reshape(-1, 3)
+        for foot in feet:
+            self._ground_patch(foot)
+
+    def _ground_patch(self, foot: Vector) -> None:
+        """A small hatched square below a foot."""
+        half = 0.045 * self.size
+        square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * half + foot
+        self._polygon(square, style.PLATE, 1.0, zorder=1, edge=style.HATCH)
+        for level in (-0.5, 0.0, 0.5):
+            hatch = foot + half * np.array([[-1.0, level - 0.5, 0.0], [1.0, level + 0.5, 0.0]])
+            self.axes.plot(*hatch.T, color=style.HATCH, lw=0.4, zorder=1.5)
+
+    def _draw_links(self, scene: Scene) -> None:
+        for link in scene.links:
+            if not len(link.points):
+                continue
+            colour = style.MEMBER if link.member else style.LINK
+            outline = link.points
+            if len(outline) > 2:
+                fill = style.MEMBER_PLATE if link.member else style.PLATE
+                self._polygon(outline, fill, 0.75, zorder=3)
+                outline = np.vstack([outline, outline[:1]])
+            self.axes.plot(*outline.T, color=colour, lw=2.0 if link.member else 1.5, zorder=3.5)
+
+    def _draw_joints(self, scene: Scene) -> None:
+        for mark in scene.joints:
+            if mark.type == "fixed":
+                continue
+            if mark.axis is not None:
+                self._draw_axis(mark, mark.axis)
+            if mark.type != "prismatic":
+                marker = style.JOINT_MARKERS[mark.type]
+                self._marker(mark.at, marker, MARKER[mark.role], style.FILL[mark.role], zorder=7)
+            if mark.role == "locked":
+                self.axes.plot(*mark.at[:, None], "x", ms=3.5, mew=0.8, color=style.INK, zorder=8)
+
+    def _draw_axis(self, mark: JointMark, axis: Vector) -> None:
+        """The axis of a joint: a short line, for sliders a thick bar."""
+        half = 0.05 * self.size
+        ends = mark.at + half * np.outer([-1.0, 1.0], axis)
+        if not mark.slides:
+            self.axes.plot(*ends.T, color=style.INK, lw=0.8, zorder=6)
+            return
+        self.axes.plot(*ends.T, color=style.INK, lw=4.6, solid_capstyle="butt", zorder=6)
+        if style.FILL[mark.role] != style.INK:
+            inside = mark.at + 0.85 * (ends - mark.at)
+            self.axes.plot(*inside.T, color=style.FILL[mark.role], lw=3.2, solid_capstyle="butt", zorder=6.1)
+
+    def _draw_contacts(self, scene: Scene) -> None:
+        for mark in scene.contacts:
+            shaft = mark.at - 0.14 * self.size * np.outer([1.0, 0.0], mark.normal)
+            self.axes.plot(*shaft.T, color=style.INK, lw=0.8, zorder=7)
+            self._marker(mark.at, "^", 4.4, "white", zorder=8)
+
+    def _draw_shape(self, shape: EllipsoidShape) -> None:
+        colour = style.KINDS[shape.kind].colour
+        for patch in shape.patches:
+            self._polygon(patch.outline, colour, 0.16, zorder=10)
+        for curve in shape.curves:
+            self.axes.plot(*curve.points.T, color=colour, lw=1.0, zorder=11)
+        for line in shape.unbounded:
+            self.axes.plot(*line.points.T, color=colour, lw=1.0, ls=(0, (4, 2.2)), zorder=12)
+            for end in line.points:
+                self.axes.plot(*end[:, None], "o", color=colour, ms=2.5, zorder=12)
+
+    def _marker(self, at: Vector, marker: str, size: float, fill: str, zorder: float) -> None:
+        self.axes.plot(
+            *at[:, None],
+            linestyle="none",
+            marker=marker,
+            ms=size,
+            mfc=fill,
+            mec=style.INK,
+            mew=0.8,
+            zorder=zorder,
+        )
+
+    def _polygon(self, outline: Matrix, colour: str, alpha: float, zorder: float, edge: str = "none") -> None:
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+        piece = Poly3DCollection([outline], facecolors=colour, edgecolors=edge, linewidths=0.5, alpha=alpha)
+        piece.set_zorder(zorder)
+        self.axes.add_collection3d(piece)
