@@ -1,7 +1,8 @@
 """How exactly a typed number is known: half a unit of its last digit.
 
-Only numbers with at least four digits after the point count: shorter ones are taken as meant
-exactly, and what is typed with sixteen digits is exact for all that matters.
+A number counts as rounded when it was typed with at least four digits after the point, at least
+four of its digits being significant: 1.5708 and 0.02645 may be rounded, 1.57 and 0.0061 are taken as
+meant.  So 6.1 mm is exact whether it is typed in millimetres or in metres.
 """
 
 from __future__ import annotations
@@ -9,10 +10,10 @@ from __future__ import annotations
 import re
 from typing import Final
 
-FEWEST_DECIMALS: Final = 4
-"""Numbers with fewer digits after the point are exact."""
+FEWEST_DIGITS: Final = 4
+"""Numbers with fewer digits after the point, or fewer significant ones, are exact."""
 
-_NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?")
+_NUMBER: Final = re.compile(r"[+-]?(?:([0-9]+)\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?")
 
 
 def is_number(text: str) -> bool:
@@ -29,8 +30,8 @@ def half_unit(text: str) -> float:
     match = _NUMBER.fullmatch(text)
     if match is None:
         return 0.0
-    decimals = len(match[1] or match[2] or "")
-    if decimals < FEWEST_DECIMALS:
+    before, after = match[1] or "", match[2] or match[3] or ""
+    if len(after) < FEWEST_DIGITS or len((before + after).lstrip("0")) < FEWEST_DIGITS:
         return 0.0
-    power = int(match[3] or 0) - decimals
+    power = int(match[4] or 0) - len(after)
     return 0.5 * 10.0**power if -300 < power < 300 else 0.0

@@ -30,10 +30,11 @@ CHANGING_THE_TREE: Final = {
 }
 """Compiler attributes that would change bodies and frames, and what is done instead."""
 
-_COMPILER_LEFT_OUT: Final = frozenset(
-    ("discardvisual", "inertiafromgeom", "inertiagrouprange", "settotalmass", "boundmass", "boundinertia")
-    + ("balanceinertia", "saveinertial", "usethread", "exactmeshinertia", "fitaabb")
-).union(CHANGING_THE_TREE)
+_ABOUT_MASSES: Final = frozenset((
+    "discardvisual", "inertiafromgeom", "inertiagrouprange", "settotalmass", "boundmass", "boundinertia",
+    "balanceinertia", "saveinertial", "usethread", "exactmeshinertia", "fitaabb",
+))  # fmt: skip
+_COMPILER_LEFT_OUT: Final = _ABOUT_MASSES.union(CHANGING_THE_TREE)
 
 
 @dataclass(slots=True)
