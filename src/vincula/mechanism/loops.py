@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -39,7 +40,10 @@ def independent_loops(mechanism: Mechanism) -> tuple[Loop, ...]:
     edges = _edges(mechanism)
     way = _spanning_ways([body.name for body in mechanism.bodies], edges)
     walked = {name for steps in way.values() for name, _ in steps}
-    return tuple(_loop(edge, way[edge.first], way[edge.second]) for edge in edges if edge.name not in walked)
+    order = {edge.name: place for place, edge in enumerate(edges)}
+    return tuple(
+        _loop(edge, way[edge.first], way[edge.second], order) for edge in edges if edge.name not in walked
+    )
 
 
 def _edges(mechanism: Mechanism) -> list[Joint | ContactPart]:
@@ -79,7 +83,10 @@ def _grow(way: dict[str, tuple[Step, ...]], reached: list[str], edges: list[Join
                 reached.append(other)
 
 
-def _loop(edge: Joint | ContactPart, first: tuple[Step, ...], second: tuple[Step, ...]) -> Loop:
+def _loop(
+    edge: Joint | ContactPart, first: tuple[Step, ...], second: tuple[Step, ...], order: Mapping[str, int]
+) -> Loop:
+    """The loop that an edge closes, walked so that the part declared earlier comes first."""
     common = 0
     for one, two in zip(first, second, strict=False):
         if one != two:
@@ -89,4 +96,6 @@ def _loop(edge: Joint | ContactPart, first: tuple[Step, ...], second: tuple[Step
     root = first[common - 1][1]
     bodies = (root, *(body for _, body in out), *(body for _, body in reversed(back)))
     parts = (*(name for name, _ in out), edge.name, *(name for name, _ in reversed(back)))
+    if order[parts[0]] > order[parts[-1]]:
+        bodies, parts = (root, *reversed(bodies[1:])), parts[::-1]
     return Loop(edge.name, bodies, parts)
