@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.joint_types import blocked_directions
+from vincula.mechanism.blocked import blocked_directions
 from vincula.mechanism.kinematics import part_frames
 from vincula.mechanism.mechanism import Mechanism
 from vincula.spatial.poses import rotation_vector

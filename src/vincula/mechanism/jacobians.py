@@ -1,59 +1,61 @@
-"""Numbers for a reduction at a configuration: J_a, J_p and G with named rows and columns.
+"""Numbers for a layout at a configuration: J_a, J_p and G with named rows and columns.
 
-Every joint axis is written once, as a twist at the reference point in ground axes.  A cut then needs
-only a small matrix that carries twists to its point and keeps the blocked directions.
+Every joint axis is written once, as a twist at the reference point in ground axes, every blocked
+direction once, as a row on such twists.  Their products, with the layout's signs, are the Jacobian:
+
+    J = (rows @ twists) * signs,    G^T = carried * rows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import ClosureError, MissingReferenceError
-from vincula.labels import BodyMotions, Column, Cut, Row, Uncertainty
+from vincula.labels import BodyMotions, Uncertainty
+from vincula.mechanism.blocked import common_normal
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.joint_types import axis_twists, blocked_directions
-from vincula.mechanism.kinematics import body_poses, part_frames, reference_position
+from vincula.mechanism.frames import PlacedFrames
+from vincula.mechanism.kinematics import body_poses, reference_position
+from vincula.mechanism.layout import Layout, RowArrays, ScrewArrays
 from vincula.mechanism.motor_weights import weights_of_motors
-from vincula.mechanism.parts import GROUND, ContactPart
-from vincula.mechanism.reduction import CutJoint, Reduction
-from vincula.mechanism.residuals import CLOSED, axis_linear, axis_values, loop_residuals
+from vincula.mechanism.residuals import CLOSED, axis_values, residuals_of_frames
 from vincula.model import LinearModel
-from vincula.spatial.poses import Pose
-from vincula.spatial.selectors import component_names, contact_components, selector
-from vincula.spatial.twists import block_rotation, transport
+from vincula.spatial.twists import block_rotation
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
 
 
 def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
-    """The linear model of a mechanism at a closed configuration: eqs. (1) and (15)."""
+    """The linear model of a mechanism at a closed configuration: eqs. (1) and (15).
+
+    Raises:
+        MissingReferenceError: No reference member is named.
+        ClosureError: A loop or contact is open.
+    """
     reference = mechanism.reference
     if reference is None:
         raise MissingReferenceError(body.name for body in mechanism.bodies)
+    layout = mechanism.layout
     poses = body_poses(mechanism, q)
-    residual = _closed(mechanism, q, poses)
-    builder = _Builder(mechanism, mechanism.reduction, poses)
-    builder.add_all(q)
-    jacobian, member = builder.matrices()
+    frames = layout.frames.placed(poses)
+    residual = _closed(mechanism, q, frames)
+    origin = reference_position(mechanism, poses)
+    twists = screw_matrix(layout.screws, frames, origin)
+    jacobian, member = _matrices(mechanism, layout, q, blocked_matrix(layout.blocked, frames, origin), twists)
     if reference.axes == "body":
         member = member @ block_rotation(poses[reference.body].rotation)
-    active = [builder.index[name] for name in mechanism.active]
-    chosen = set(active)
-    passive = [i for i in range(len(builder.columns)) if i not in chosen]
     precision = mechanism.precision
     return LinearModel(
-        jacobian_active=jacobian[:, active],
-        jacobian_passive=jacobian[:, passive],
+        jacobian_active=jacobian[:, layout.active],
+        jacobian_passive=jacobian[:, layout.passive],
         grasp=member.T,
-        rows=tuple(builder.rows),
-        motors=tuple(builder.columns[i] for i in active),
-        passives=tuple(builder.columns[i] for i in passive),
+        rows=layout.rows,
+        motors=tuple(layout.columns[k] for k in layout.active),
+        passives=tuple(layout.columns[k] for k in layout.passive),
         space=mechanism.space,
         length=mechanism.length,
         uncertainty=Uncertainty(
@@ -62,21 +64,27 @@ def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
             precision.digits_angle,
             precision.tolerance_length,
             precision.tolerance_angle,
-            builder.curvature(),
+            _curvature(mechanism, layout, frames, origin),
         ),
         mechanism=mechanism.name,
         reference=reference.label or reference.body,
         frame="ground axes" if reference.axes == "ground" else f"axes of {reference.body}",
-        cuts=tuple(builder.cuts),
+        cuts=layout.labels(frames.position),
         notes=(*mechanism.notes, *mechanism.reduction.notes),
         weights=weights_of_motors(mechanism),
-        motions=builder.motions([*active, *passive]),
+        motions=BodyMotions(
+            names=layout.groups,
+            screws=frozen(twists[:, np.concatenate([layout.active, layout.passive])]),
+            path=layout.path,
+            carried=layout.group_carried,
+            origin=frozen(np.array(origin)),
+        ),
     )
 
 
-def _closed(mechanism: Mechanism, q: Configuration, poses: Mapping[str, Pose]) -> float:
+def _closed(mechanism: Mechanism, q: Configuration, frames: PlacedFrames) -> float:
     """Largest residual, refusing open loops."""
-    residuals = loop_residuals(mechanism, q, poses)
+    residuals = residuals_of_frames(mechanism, q, frames)
     if not residuals:
         return 0.0
     worst = max(residuals, key=lambda r: r.gap)
@@ -93,212 +101,61 @@ def _closed(mechanism: Mechanism, q: Configuration, poses: Mapping[str, Pose]) -
     return worst.gap
 
 
-@dataclass(frozen=True, slots=True)
-class _Block:
-    """Rows of one cut: matrix on twists at the reference point, and the bodies on both sides."""
+def screw_matrix(screws: ScrewArrays, frames: PlacedFrames, origin: Vector) -> Matrix:
+    """d x columns: twist of every column at `origin`, in ground axes, for a unit of its rate."""
+    axis = (frames.rotation[screws.frame] @ screws.axis[:, :, None])[:, :, 0]
+    arm = origin - frames.position[screws.centre]
+    turned = screws.turn[:, None] * axis
+    slid = screws.slide[:, None] * axis
+    if len(origin) == 2:
+        around = np.stack([-arm[:, 1], arm[:, 0]], axis=1) * screws.turn[:, None]
+        return np.vstack([(slid + around).T, screws.turn])
+    return np.vstack([(slid + _cross(turned, arm)).T, turned.T])
 
-    matrix: Matrix
-    terms: tuple[tuple[str, int], ...]
-    own: tuple[str, int] | None
-    carried: int
+
+def blocked_matrix(rows: RowArrays, frames: PlacedFrames, origin: Vector) -> Matrix:
+    """rows x d: the blocked directions, as rows on twists at `origin` in ground axes."""
+    rotation = frames.rotation[rows.frame]
+    arm = frames.position[rows.point] - origin
+    push = (rotation @ rows.push[:, :, None])[:, :, 0]
+    if len(origin) == 2:
+        around = arm[:, :1] * push[:, 1:] - arm[:, 1:] * push[:, :1]
+        return np.hstack([push, around + rows.turn])
+    turn = (rotation @ rows.turn[:, :, None])[:, :, 0]
+    for k, other, axis in rows.across:
+        turn[k] = common_normal(rotation[k, :, 2], frames.rotation[other] @ axis)
+    return np.hstack([push, _cross(arm, push) + turn])
 
 
-class _Builder:
-    """Collects columns and row blocks, then fills the matrices."""
+def _cross(one: Matrix, two: Matrix) -> Matrix:
+    """Row by row cross product (numpy's own is slow on few rows)."""
+    (ax, ay, az), (x, y, z) = one.T, two.T
+    return np.stack([ay * z - az * y, az * x - ax * z, ax * y - ay * x], axis=1)
 
-    def __init__(self, mechanism: Mechanism, reduction: Reduction, poses: Mapping[str, Pose]) -> None:
-        self.mechanism, self.reduction, self.poses = mechanism, reduction, poses
-        self.origin = reference_position(mechanism, poses)
-        self.columns: list[Column] = []
-        self.index: dict[str, int] = {}
-        self.of_joint: dict[str, list[int]] = {}
-        self.twists: list[Matrix] = []
-        self.rows: list[Row] = []
-        self.cuts: list[Cut] = []
-        self._blocks: list[_Block] = []
-        self._scalar_rows: list[dict[str, float]] = []
-        self._path_columns: dict[str, tuple[list[int], list[int]]] = {}
 
-    def add_all(self, q: Configuration) -> None:
-        """Columns of every joint that has some, then rows of contacts, cuts, couplings and drives."""
-        hidden = {c.joint.name for c in self.reduction.cuts if c.kind == "contact"} | self.reduction.unused
-        for joint in self.mechanism.all_joints:
-            if joint.name not in hidden:
-                self._add_joint(joint.name)
-        for contact in self.reduction.contacts:
-            self._add_contact(contact)
-        for cut in self.reduction.cuts:
-            self._add_cut(cut)
-        self._add_couplings(q)
-        self._add_drives()
+def _matrices(
+    mechanism: Mechanism, layout: Layout, q: Configuration, blocked: Matrix, twists: Matrix
+) -> tuple[Matrix, Matrix]:
+    """J over all columns, and G^T in ground axes; adding 0.0 turns -0.0 into 0.0."""
+    jacobian = np.vstack([(blocked @ twists) * layout.signs, layout.constant]) + 0.0
+    member = np.zeros((len(jacobian), mechanism.space.dimension))
+    member[: len(blocked)] = layout.carried[:, None] * blocked + 0.0
+    if layout.polynomials:
+        values, home = axis_values(mechanism, q), axis_values(mechanism, mechanism.home)
+        index = layout.index
+        for k, coupling in layout.polynomials:
+            for axis, coefficient in coupling.coefficients(values, home).items():
+                if axis in index:
+                    jacobian[len(blocked) + k, index[axis]] = coefficient
+    return jacobian, member
 
-    def _add_joint(self, name: str) -> None:
-        joint = self.mechanism.joint[name]
-        kind = self.mechanism.type_of(joint)
-        indices: list[int] = []
-        if kind.axes:
-            first, second = part_frames(joint, self.poses)
-            twists = axis_twists(kind, first, second, joint.lead, joint.second_axis, self.origin)
-            for k, axis in enumerate(kind.axis_names(name)):
-                if axis in self.mechanism.lock:
-                    continue
-                indices.append(self._add_column(Column(axis, name, kind.linear[k]), twists[:, k]))
-        self.of_joint[name] = indices
 
-    def _add_column(self, column: Column, twist: Vector) -> int:
-        self.index[column.name] = len(self.columns)
-        self.columns.append(column)
-        self.twists.append(twist)
-        return len(self.columns) - 1
+def _curvature(mechanism: Mechanism, layout: Layout, frames: PlacedFrames, origin: Vector) -> float:
+    """Bound K on the second derivatives of the loop equations in scaled units.
 
-    def _rows_at(self, selected: Matrix, point: Vector) -> Matrix:
-        """Rows on twists at `point`, as rows on twists at the reference point."""
-        return selected @ transport(point - self.origin)
-
-    def _add_contact(self, contact: ContactPart) -> None:
-        first, _ = part_frames(contact, self.poses)
-        space = self.mechanism.space
-        components = contact_components(contact.type, space)
-        selected = selector(components, space) @ block_rotation(first.rotation.T)
-        names = component_names(components, space)
-        for name in names:
-            self.rows.append(Row(f"{contact.name}.{name}", "contact", contact.name, name[0] == "f"))
-        carried = self.reduction.carried
-        self._blocks.append(
-            _Block(
-                self._rows_at(selected, first.position),
-                ((contact.first, 1), (contact.second, -1)),
-                None,
-                int(carried[contact.second]) - int(carried[contact.first]),
-            )
-        )
-
-    def _add_cut(self, cut: CutJoint) -> None:
-        joint = cut.joint
-        first, second = part_frames(joint, self.poses)
-        other = joint.second if cut.limb_body == joint.first else joint.first
-        terms = ((cut.limb_body, 1), (other, -1))
-        carried = int(self.reduction.carried[other]) - int(self.reduction.carried[cut.limb_body])
-        if cut.kind == "contact":
-            kind = self.mechanism.type_of(joint)
-            blocked = blocked_directions(kind, first, second, joint.lead, joint.second_axis)
-            point, matrix, names, linear = first.position, blocked.matrix, blocked.names, blocked.linear
-            own = None
-        else:
-            point = self._cut_point(cut, other, first)
-            space = self.mechanism.space
-            matrix, names = np.eye(space.dimension), space.wrench_components
-            linear = tuple(k < space.translations for k in range(space.dimension))
-            own = (joint.name, cut.limb_sign)
-        for name, flag in zip(names, linear, strict=True):
-            self.rows.append(Row(f"{joint.name}.{name}", cut.role, joint.name, flag))
-        self.cuts.append(Cut(joint.name, cut.kind, cut.role, tuple(float(x) for x in point)))
-        self._blocks.append(_Block(self._rows_at(matrix, point), terms, own, carried))
-
-    def _cut_point(self, cut: CutJoint, other: str, first: Pose) -> Vector:
-        """The declared cut point, which is fixed on the body that is cut; else the joint's centre."""
-        reference = self.mechanism.reference
-        asked = reference.cuts.get(cut.joint.name) if reference else None
-        if asked is None or asked.at is None:
-            return first.position
-        point = np.array(asked.at, dtype=float)
-        if other == GROUND:
-            return point
-        home = self.mechanism.body[other].pose
-        now = self.poses[other]
-        return point if now is home else now.apply(home.inverse().apply(point))
-
-    def _add_couplings(self, q: Configuration) -> None:
-        if not self.mechanism.couplings:
-            return
-        values, home = axis_values(self.mechanism, q), axis_values(self.mechanism, self.mechanism.home)
-        linear = axis_linear(self.mechanism)
-        for coupling in self.mechanism.couplings:
-            terms = coupling.coefficients(values, home) if coupling.driver else dict(coupling.rates)
-            in_metres = any(linear[axis] for axis in coupling.rates)
-            self.rows.append(Row(f"{coupling.name}.rate", "coupling", coupling.name, in_metres))
-            self._scalar_rows.append(terms)
-
-    def _add_drives(self) -> None:
-        linear = axis_linear(self.mechanism)
-        for drive in self.mechanism.drives:
-            if drive.name not in self.mechanism.active:
-                continue
-            guessed = any(linear[axis] for axis in drive.drives)
-            in_metres = guessed if drive.linear is None else drive.linear
-            nothing = np.zeros(self.mechanism.space.dimension)
-            self._add_column(Column(drive.name, drive.name, in_metres), nothing)
-            self.rows.append(Row(f"{drive.name}.rate", "drive", drive.name, in_metres))
-            self._scalar_rows.append({**drive.drives, drive.name: -1.0})
-
-    def path_columns(self, body: str) -> tuple[list[int], list[int]]:
-        """Columns, and their signs, on the way from a body's root to it."""
-        if body not in self._path_columns:
-            found = [
-                (i, sign) for joint, sign in self.reduction.paths[body] for i in self.of_joint.get(joint, ())
-            ]
-            self._path_columns[body] = ([i for i, _ in found], [sign for _, sign in found])
-        return self._path_columns[body]
-
-    def matrices(self) -> tuple[Matrix, Matrix]:
-        """J (rows x all columns) and G^T (rows x d), before columns are split by motors."""
-        d = self.mechanism.space.dimension
-        twists = np.column_stack(self.twists) if self.twists else np.zeros((d, 0))
-        jacobian = np.zeros((len(self.rows), len(self.columns)))
-        member = np.zeros((len(self.rows), d))
-        row = 0
-        for block in self._blocks:
-            count = len(block.matrix)
-            part = slice(row, row + count)
-            axes = block.matrix @ twists
-            for body, side in block.terms:
-                columns, signs = self.path_columns(body)
-                jacobian[part, columns] += axes[:, columns] * (side * np.array(signs, dtype=float))
-            if block.own is not None:
-                columns = self.of_joint[block.own[0]]
-                jacobian[part, columns] += axes[:, columns] * block.own[1]
-            member[part] = block.carried * block.matrix
-            row += count
-        for terms in self._scalar_rows:
-            for axis, coefficient in terms.items():
-                if axis in self.index:
-                    jacobian[row, self.index[axis]] = coefficient
-            row += 1
-        return jacobian, member
-
-    def curvature(self) -> float:
-        """Bound K on the second derivatives of the loop equations in scaled units.
-
-        Along a chain of n axes |f''(v, v)| <= (sum |v_i|)^2 r <= n r |v|^2 with r the largest distance
-        of its joints from the cut; the member's own motion counts as one more chain.
-        """
-        length = self.mechanism.length
-        longest = max(
-            (
-                sum(len(self.path_columns(body)[0]) for body, _ in block.terms) + abs(block.carried)
-                for block in self._blocks
-            ),
-            default=0,
-        )
-        frames = [part_frames(joint, self.poses)[0].position for joint in self.mechanism.joints]
-        reach = max((float(np.linalg.norm(point - self.origin)) for point in frames), default=0.0)
-        return max(1, longest) * max(1.0, reach / length)
-
-    def motions(self, order: Sequence[int]) -> BodyMotions:
-        """How every rigid group of bodies moves, columns in the model's order."""
-        names = list(self.reduction.clusters)
-        d = self.mechanism.space.dimension
-        path = np.zeros((len(names), len(self.columns)))
-        for k, name in enumerate(names):
-            columns, signs = self.path_columns(name)
-            path[k, columns] = signs
-        twists = np.column_stack(self.twists) if self.twists else np.zeros((d, 0))
-        member = self.mechanism.reference.body if self.mechanism.reference else ""
-        shown = [member if member in self.reduction.clusters[n] else n for n in names]
-        return BodyMotions(
-            names=tuple(shown),
-            screws=frozen(twists[:, list(order)]),
-            path=frozen(path[:, list(order)]),
-            carried=tuple(self.reduction.carried[n] for n in names),
-            origin=frozen(np.array(self.origin)),
-        )
+    Along a chain of n axes |f''(v, v)| <= (sum |v_i|)^2 r <= n r |v|^2 with r the largest distance
+    of its joints from the cut; the member's own motion counts as one more chain.
+    """
+    joints = frames.position[1 : 1 + 2 * len(mechanism.joints) : 2] - origin
+    reach = float(np.sqrt((joints * joints).sum(axis=1).max(initial=0.0)))
+    return max(1, layout.longest) * max(1.0, reach / mechanism.length)

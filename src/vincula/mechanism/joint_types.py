@@ -154,6 +154,48 @@ def _step(step: str, value: float, s: int, lead: float, second_axis: Vector) -> 
     return Pose(rotation_about(_Z, value), np.array([0.0, 0.0, rise]))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Screw:
+    """The motion that one axis of a joint permits: a turn about a line, a slide along it, or both.
+
+    Attributes:
+        on_second: Whether the axis is carried by frame B (otherwise by frame A); it goes through the
+            origin of B.
+        axis: Unit vector in that frame; zero for a turn in the plane.
+        turn: 1 where the axis turns, else 0.
+        slide: Advance along the axis for a unit of the rate.
+    """
+
+    on_second: bool
+    axis: Vector
+    turn: float
+    slide: float
+
+
+def screws(kind: JointType, lead: float, second_axis: Vector) -> tuple[Screw, ...]:
+    """The screw of every axis of a joint.
+
+    Args:
+        kind: The joint type.
+        lead: Advance of a screw joint a turn [m].
+        second_axis: Second axis of a universal joint in the joint frame.
+    """
+    unit = np.eye(2 if kind.planar else 3)
+    found: list[Screw] = []
+    for step in kind.steps:
+        if step[0] == "T":
+            found.append(Screw(False, unit["xyz".index(step[1])], 0.0, 1.0))
+        elif kind.planar:
+            found.append(Screw(True, np.zeros(2), 1.0, 0.0))
+        elif step == "S":
+            found.extend(Screw(True, unit[k], 1.0, 0.0) for k in range(3))
+        elif step == "R2":
+            found.append(Screw(True, second_axis, 1.0, 0.0))
+        else:
+            found.append(Screw(False, _Z, 1.0, lead / (2 * math.pi) if step == "H" else 0.0))
+    return tuple(found)
+
+
 def axis_twists(
     kind: JointType, first: Pose, second: Pose, lead: float, second_axis: Vector, point: Vector
 ) -> Matrix:
@@ -167,129 +209,28 @@ def axis_twists(
         second_axis: Second axis of a universal joint in the joint frame.
         point: Where the linear velocities are taken [m].
     """
-    s = 2 if kind.planar else 3
-    columns: list[Vector] = []
-    for step in kind.steps:
-        if step[0] == "T":
-            axis = first.rotation[:, "xyz".index(step[1])]
-            columns.append(np.concatenate([axis, np.zeros(1 if s == 2 else 3)]))
-        elif s == 2:
-            arm = point - second.position
-            columns.append(np.array([-arm[1], arm[0], 1.0]))
-        elif step == "S":
-            columns.extend(_turn(second.rotation[:, k], point - second.position) for k in range(3))
-        elif step == "R2":
-            columns.append(_turn(second.rotation @ second_axis, point - second.position))
+    arm = point - second.position
+    twists = np.zeros((3 if kind.planar else 6, len(kind.axes)))
+    for k, screw in enumerate(screws(kind, lead, second_axis)):
+        axis = (second if screw.on_second else first).rotation @ screw.axis
+        if kind.planar:
+            twists[:2, k] = screw.slide * axis + screw.turn * np.array([-arm[1], arm[0]])
+            twists[2, k] = screw.turn
         else:
-            axis = first.rotation[:, 2]
-            column = _turn(axis, point - second.position)
-            if step == "H":
-                column[:3] += lead / (2 * math.pi) * axis
-            columns.append(column)
-    d = 3 if s == 2 else 6
-    return np.column_stack(columns) if columns else np.zeros((d, 0))
+            twists[:3, k] = screw.slide * axis + screw.turn * _cross(axis, arm)
+            twists[3:, k] = screw.turn * axis
+    return twists
 
 
-def _turn(axis: Vector, arm: Vector) -> Vector:
-    ax, ay, az = axis
-    x, y, z = arm
-    return np.array([ay * z - az * y, az * x - ax * z, ax * y - ay * x, ax, ay, az])
+def _cross(one: Vector, two: Vector) -> Vector:
+    (ax, ay, az), (x, y, z) = one, two
+    return np.array([ay * z - az * y, az * x - ax * z, ax * y - ay * x])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Blocked:
-    """The directions of relative velocity that a joint or contact prohibits.
-
-    Attributes:
-        matrix: rows x d, on relative twists at the joint's point in ground axes.
-        gaps: For every row, how far the position is from satisfying it [m or rad]; the row is its
-            derivative, relative motion being that of the second body against the first.
-        linear: For every row, whether it is in m/s.
-        names: Names of the force components.
-    """
-
-    matrix: Matrix
-    gaps: Vector
-    linear: tuple[bool, ...]
-    names: tuple[str, ...]
-
-
-def blocked_directions(
-    kind: JointType, first: Pose, second: Pose, lead: float, second_axis: Vector
-) -> Blocked:
-    """Table II for every joint type: the complement of its axes, with the gaps of the positions."""
-    s = 2 if kind.planar else 3
-    frame = first.rotation
-    offset = second.position - first.position
-    moving = {step[1] for step in kind.steps if step[0] == "T"}
-    letters = "xyz"[:s]
-    rows: list[Vector] = []
-    gaps: list[float] = []
-    names: list[str] = []
-    turns = 1 if s == 2 else 3
-    for k, letter in enumerate(letters):
-        if letter in moving:
-            continue
-        row = np.concatenate([frame[:, k], np.zeros(turns)])
-        gap = float(frame[:, k] @ offset)
-        if "H" in kind.steps and letter == "z":
-            pitch = lead / (2 * math.pi)
-            row[3:] -= pitch * frame[:, 2]
-            gap = _wrapped(gap - pitch * _angle_about_z(first, second), lead)
-        rows.append(row)
-        gaps.append(gap)
-        names.append(f"f{letter}")
-    directions, errors, labels = _blocked_turns(kind, first, second, second_axis)
-    for direction, error, label in zip(directions, errors, labels, strict=True):
-        rows.append(np.concatenate([np.zeros(s), direction]))
-        gaps.append(error)
-        names.append(label)
-    linear = tuple(name[0] == "f" for name in names)
-    d = s + turns
-    matrix = np.array(rows) if rows else np.zeros((0, d))
-    return Blocked(matrix, np.array(gaps), linear, tuple(names))
-
-
-def _wrapped(gap: float, lead: float) -> float:
-    return gap if lead == 0 else gap - lead * round(gap / lead)
-
-
-def _angle_about_z(first: Pose, second: Pose) -> float:
+def angle_about_z(first: Pose, second: Pose) -> float:
+    """Angle about z from frame A to frame B, their z axes being nearly the same [rad]."""
     relative = first.rotation.T @ second.rotation
     return math.atan2(relative[1, 0] - relative[0, 1], relative[0, 0] + relative[1, 1])
-
-
-def _blocked_turns(
-    kind: JointType, first: Pose, second: Pose, second_axis: Vector
-) -> tuple[list[Vector], list[float], list[str]]:
-    from vincula.spatial.poses import rotation_vector
-
-    turning = [step for step in kind.steps if step[0] != "T"]
-    if "S" in turning or (kind.planar and turning):
-        return [], [], []
-    relative = first.rotation.T @ second.rotation
-    if kind.planar:
-        return [np.ones(1)], [float(rotation_vector(relative)[0])], ["mz"]
-    if not turning:
-        error = rotation_vector(relative)
-        return [first.rotation[:, k] for k in range(3)], [float(e) for e in error], ["mx", "my", "mz"]
-    if len(turning) == 2:
-        one, two = first.rotation[:, 2], second.rotation @ second_axis
-        across = np.cross(one, two)
-        size = float(np.linalg.norm(across))
-        error_1 = (float(second_axis[2]) - float(one @ two)) / size
-        return [across / size], [error_1], ["mx"]
-    tilt = _tilt(relative[:, 2])
-    return [first.rotation[:, 0], first.rotation[:, 1]], [float(tilt[0]), float(tilt[1])], ["mx", "my"]
-
-
-def _tilt(axis: Vector) -> Vector:
-    """Rotation vector (x, y) that takes z to `axis`; half a turn about x when they are opposite."""
-    sine = math.hypot(axis[0], axis[1])
-    angle = math.atan2(sine, axis[2])
-    if sine == 0.0:
-        return np.array([angle, 0.0])
-    return np.array([-axis[1], axis[0]]) * (angle / sine)
 
 
 def values_between(kind: JointType, first: Pose, second: Pose, second_axis: Vector) -> Vector:
@@ -312,7 +253,7 @@ def values_between(kind: JointType, first: Pose, second: Pose, second_axis: Vect
         elif "R2" in kind.steps:
             values.append(_first_universal_angle(relative.rotation, second_axis))
         else:
-            values.append(_angle_about_z(first, second))
+            values.append(angle_about_z(first, second))
     return np.array(values)
 
 

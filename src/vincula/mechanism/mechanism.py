@@ -32,6 +32,8 @@ from vincula.spatial.space import PLANAR, SPATIAL, Space
 
 if TYPE_CHECKING:
     from vincula.mechanism.drawing import Contact, DrawnBody, DrawnJoint, Reference
+    from vincula.mechanism.frames import FrameTable
+    from vincula.mechanism.layout import Layout
     from vincula.mechanism.reduction import Reduction
     from vincula.mechanism.residuals import LoopResidual
     from vincula.model import LinearModel
@@ -283,10 +285,11 @@ class Mechanism:
         self, q: Mapping[str, float | Sequence[float] | Vector] | None = None
     ) -> tuple[LoopResidual, ...]:
         """How far every loop, contact and coupling is from being closed."""
-        from vincula.mechanism.residuals import loop_residuals
+        from vincula.mechanism.residuals import residuals_of_frames
 
         configuration = self.configuration(q)
-        return loop_residuals(self, configuration, self.body_poses(configuration))
+        frames = self.frame_table.placed(self.body_poses(configuration))
+        return residuals_of_frames(self, configuration, frames)
 
     @cached_property
     def tree(self) -> tuple[tuple[Joint, bool], ...]:
@@ -294,6 +297,13 @@ class Mechanism:
         from vincula.mechanism.kinematics import grow_tree
 
         return grow_tree(self)
+
+    @cached_property
+    def frame_table(self) -> FrameTable:
+        """All frames of joints and contacts, with the bodies that carry them."""
+        from vincula.mechanism.frames import FrameTable
+
+        return FrameTable.of_mechanism(self)
 
     @cached_property
     def reduction(self) -> Reduction:
@@ -307,6 +317,17 @@ class Mechanism:
         if self.reference is None:
             raise MissingReferenceError(body.name for body in self.bodies)
         return reduce_graph(self)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Rows, columns and signs of J_a, J_p and G: all of them that does not depend on a configuration.
+
+        Raises:
+            MissingReferenceError: No reference member is named.
+        """
+        from vincula.mechanism.assembly import lay_out
+
+        return lay_out(self)
 
     @cached_property
     def length(self) -> float:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from vincula.arrays import Vector
+from vincula.mechanism.blocked import angle_beyond, blocked_directions
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.joint_types import blocked_directions, motion
-from vincula.mechanism.kinematics import part_frames
+from vincula.mechanism.frames import PlacedFrames
+from vincula.mechanism.joint_types import motion
 from vincula.mechanism.parts import ContactPart, Joint
 from vincula.spatial.poses import Pose, rotation_vector
 from vincula.spatial.selectors import contact_components
@@ -48,22 +48,42 @@ class LoopResidual:
         return f"{self.kind} {self.name!r} is open by {' and '.join(parts)}"
 
 
-def loop_residuals(
-    mechanism: Mechanism, q: Configuration, poses: Mapping[str, Pose]
+def residuals_of_frames(
+    mechanism: Mechanism, q: Configuration, frames: PlacedFrames
 ) -> tuple[LoopResidual, ...]:
-    """Gaps of everything outside the kinematic tree."""
+    """Gaps of everything outside the kinematic tree, from where the frames are.
+
+    Where both frames of a part coincide to the last bit, as in a drawing, nothing needs measuring.
+    """
+    table, length = mechanism.frame_table, mechanism.length
     tree = {joint.name for joint, _ in mechanism.tree}
-    length = mechanism.length
-    result = [
-        _measured(joint.name, "loop", *_joint_gap(mechanism, joint, q, poses), length)
-        for joint in mechanism.all_joints
-        if joint.name not in tree
-    ]
-    result += [
-        _measured(contact.name, "contact", *_contact_gap(mechanism, contact, poses), length)
-        for contact in mechanism.contacts
-    ]
+    outside = [joint for joint in mechanism.all_joints if joint.name not in tree]
+    index = np.array(
+        [table.of_joint[j.name] for j in outside] + [table.of_contact[c.name] for c in mechanism.contacts],
+        dtype=np.intp,
+    )
+    equal = frames.coincide(index, index + 1)
+    result = []
+    parts: tuple[Joint | ContactPart, ...] = (*outside, *mechanism.contacts)
+    for part, at, same in zip(parts, index, equal, strict=True):
+        kind: Literal["loop", "contact"] = "loop" if isinstance(part, Joint) else "contact"
+        if same and not _displaced(mechanism, part, q):
+            result.append(LoopResidual(part.name, kind, 0.0, 0.0, 0.0))
+            continue
+        ends = frames.pose(at), frames.pose(at + 1)
+        if isinstance(part, Joint):
+            linear, angular = _joint_gap(mechanism, part, q, *ends)
+        else:
+            linear, angular = _contact_gap(mechanism, part, *ends)
+        result.append(_measured(part.name, kind, linear, angular, length))
     return (*result, *_coupling_residuals(mechanism, q, length))
+
+
+def _displaced(mechanism: Mechanism, part: Joint | ContactPart, q: Configuration) -> bool:
+    """Whether a joint's own values put its frames apart."""
+    if not isinstance(part, Joint) or part.closure:
+        return False
+    return not np.array_equal(q[part.name], mechanism.type_of(part).zero)
 
 
 def _measured(
@@ -74,10 +94,9 @@ def _measured(
 
 
 def _joint_gap(
-    mechanism: Mechanism, joint: Joint, q: Configuration, poses: Mapping[str, Pose]
+    mechanism: Mechanism, joint: Joint, q: Configuration, first: Pose, second: Pose
 ) -> tuple[Vector, Vector]:
     """Gap of a joint outside the tree: of its whole pose where it has values, else of what it blocks."""
-    first, second = part_frames(joint, poses)
     kind = mechanism.type_of(joint)
     if joint.closure:
         blocked = blocked_directions(kind, first, second, joint.lead, joint.second_axis)
@@ -90,17 +109,17 @@ def _joint_gap(
 
 
 def _contact_gap(
-    mechanism: Mechanism, contact: ContactPart, poses: Mapping[str, Pose]
+    mechanism: Mechanism, contact: ContactPart, first: Pose, second: Pose
 ) -> tuple[Vector, Vector]:
-    first, second = part_frames(contact, poses)
     s = mechanism.space.translations
     components = contact_components(contact.type, mechanism.space)
     offset = first.rotation.T @ (second.position - first.position)
-    if np.array_equal(first.rotation, second.rotation):
-        turn = np.zeros(mechanism.space.rotations)
-    else:
-        turn = rotation_vector(first.rotation.T @ second.rotation)
     linear = np.array([offset[k] for k in components if k < s])
+    relative = first.rotation.T @ second.rotation
+    if contact.type == "line":
+        along = np.array([1.0, 0.0, 0.0])
+        return linear, np.array([angle_beyond(relative @ along, along)])
+    turn = rotation_vector(relative)
     return linear, np.array([turn[k - s] for k in components if k >= s])
 
 
