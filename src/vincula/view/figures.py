@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+SPATIAL_HEIGHT = 0.86
+"""Height of a spatial panel over its width."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
@@ -77,14 +80,14 @@ def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
     handles = _handles(panels)
     foot_notes = layout.wrapped(style.note(shapes, planar), sheet.width - 0.2)
     legend_rows = -(-len(handles) // _legend_columns(handles, sheet.width))
-    header = any(panel.header for panel in panels)
     grid = Grid(
-        rows=-(-len(panels) // sheet.columns),
         columns=sheet.columns,
         width=sheet.width,
         panel=panel_width,
-        height=seen.height if seen is not None else 0.95 * panel_width,
-        title=0.05 + layout.TITLE_LINE * (max(bool(shapes) + len(p.title) for p in panels) + 1.3 * header),
+        height=seen.height if seen is not None else SPATIAL_HEIGHT * panel_width,
+        titles=tuple(
+            _title_room(panels[i : i + sheet.columns]) for i in range(0, len(panels), sheet.columns)
+        ),
         left=left,
         below=layout.BELOW_PANELS if planar else 0.04,
         between=layout.GAP,
@@ -96,6 +99,12 @@ def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
         _draw_panel(figure, grid, index, panels, seen, points, sheet)
     _draw_foot(figure, grid, handles, foot_notes)
     return figure
+
+
+def _title_room(row: Sequence[Panel]) -> float:
+    """Room above a row of panels [inch]: a header, names and scales, efficiencies, unbounded lines."""
+    lines = max((panel.shape is not None) + len(panel.title) for panel in row)
+    return 0.05 + layout.TITLE_LINE * (lines + 1.3 * any(panel.header for panel in row))
 
 
 def _points(panel: Panel) -> list[Matrix]:
@@ -112,24 +121,26 @@ def _draw_panel(
     sheet: Sheet,
 ) -> None:
     panel, count = panels[index], len(panels)
+    named = sheet.names and (index == 0 or bool(panel.header))
     row, column = divmod(index, grid.columns)
     box = grid.box(row, column)
     if seen is not None:
         axes = figure.add_axes(box)
         PlanarPanel(axes, seen.low, seen.high, seen.points_per_metre).draw(
-            panel.scene, panel.shape, names=sheet.names
+            panel.scene, panel.shape, names=named
         )
         _planar_axes(axes, first_column=column == 0, last_row=index + grid.columns >= count)
     else:
         axes = figure.add_axes(box, projection="3d", proj_type="ortho")
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         half = 0.5 * np.ptp(points, axis=0) + 0.04 * panel.scene.size
-        SpatialPanel(axes, centre - half, centre + half, panel.scene.size).draw(
-            panel.scene, panel.shape, names=sheet.names
+        SpatialPanel(axes, centre - half, centre + half, panel.scene.size, sheet.direction).draw(
+            panel.scene, panel.shape, names=named
         )
-        _spatial_axes(axes, sheet.direction)
+        _spatial_axes(axes)
     letter = string.ascii_lowercase[index % 26] if count > 1 else ""
-    _draw_title(figure, grid, box, panel, letter, max(len(p.title) for p in panels))
+    peers = panels[row * grid.columns : (row + 1) * grid.columns]
+    _draw_title(figure, grid.size[1], box, panel, letter, peers)
 
 
 def _planar_axes(axes: Axes, first_column: bool, last_row: bool) -> None:
@@ -142,8 +153,7 @@ def _planar_axes(axes: Axes, first_column: bool, last_row: bool) -> None:
         axes.set_ylabel("y [m]", labelpad=1)
 
 
-def _spatial_axes(axes: Axes3D, direction: tuple[float, float]) -> None:
-    axes.view_init(elev=direction[0], azim=direction[1])
+def _spatial_axes(axes: Axes3D) -> None:
     axes.set_xlabel("x [m]", labelpad=-9)
     axes.set_ylabel("y [m]", labelpad=-9)
     axes.set_zlabel("z [m]", labelpad=-9)
@@ -151,13 +161,19 @@ def _spatial_axes(axes: Axes3D, direction: tuple[float, float]) -> None:
         axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
     axes.tick_params(pad=-4, labelsize=6)
+    axes.tick_params(axis="z", pad=-1)
 
 
 def _draw_title(
-    figure: Figure, grid: Grid, box: tuple[float, float, float, float], panel: Panel, letter: str, lines: int
+    figure: Figure,
+    height: float,
+    box: tuple[float, float, float, float],
+    panel: Panel,
+    letter: str,
+    row: Sequence[Panel],
 ) -> None:
     """Up to four lines above a panel: header, name with scale, efficiencies, unbounded direction."""
-    height = grid.size[1]
+    lines = max(len(peer.title) for peer in row)
     x, top = box[0], box[1] + box[3] + 0.04 / height
     step = layout.TITLE_LINE / height
     for k, line in enumerate(panel.title):
@@ -169,7 +185,7 @@ def _draw_title(
         figure.text(x, y, name, fontsize=7, fontweight="bold", color=kind.colour, va="bottom")
         figure.text(x + box[2], y, style.scale_text(panel.shape), fontsize=6.5, ha="right", va="bottom")
     if panel.header:
-        y = box[1] + box[3] + (grid.title - 1.15 * layout.TITLE_LINE) / height
+        y = box[1] + box[3] + (_title_room(row) - 1.15 * layout.TITLE_LINE) / height
         figure.text(x, y, panel.header, fontsize=7.5, fontweight="bold", va="bottom")
 
 
@@ -182,7 +198,8 @@ def _draw_foot(figure: Figure, grid: Grid, handles: Sequence[Line2D], notes: Seq
         ncols=_legend_columns(handles, grid.width),
         frameon=False,
         fontsize=6.5,
-        handletextpad=0.4,
+        handletextpad=0.5,
+        handlelength=1.6,
         columnspacing=1.2,
         borderpad=0.0,
         borderaxespad=0.0,

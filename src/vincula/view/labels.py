@@ -13,13 +13,13 @@ ANGLES = (45, 135, -45, -135, 90, 0, 180, -90, 22, 158, -22, -158, 68, 112, -68,
 """Directions of a label from its anchor, the preferred ones first [deg]."""
 CHARACTER = 4.2
 HEIGHT = 6.5
+DISTANCES = (4.0, 9.0, 15.0)
+"""Free space between an anchor and its label, tried one after the other [points]."""
 ENOUGH = 1.5
 """Free space around a label beyond which more is no better [points]."""
 
 
-def place_labels(
-    anchors: Sequence[Vector], texts: Sequence[str], obstacles: Matrix, distance: float = 4.0
-) -> list[Vector]:
+def place_labels(anchors: Sequence[Vector], texts: Sequence[str], obstacles: Matrix) -> list[Vector]:
     """Centres of labels in points, one for every anchor in turn.
 
     Every label takes the first direction in which it is clear of everything drawn, labels placed
@@ -29,19 +29,17 @@ def place_labels(
         anchors: What is labelled [points].
         texts: The labels.
         obstacles: n x 2 points of everything drawn [points].
-        distance: Free space between an anchor and its label [points].
     """
     taken = obstacles
     centres: list[Vector] = []
     for anchor, text in zip(anchors, texts, strict=True):
         half = np.array([0.5 * CHARACTER * max(len(text), 2), 0.5 * HEIGHT])
-        best, best_room = anchor, -np.inf
-        for angle in np.radians(ANGLES):
-            direction = np.array([np.cos(angle), np.sin(angle)])
-            centre = anchor + direction * (distance + float(np.abs(direction) @ half))
-            room = _room(centre, half, taken)
-            if room > best_room + 1e-9:
-                best, best_room = centre, room
+        candidates = [
+            anchor + direction * (distance + float(np.abs(direction) @ half))
+            for distance in DISTANCES
+            for direction in np.column_stack([np.cos(np.radians(ANGLES)), np.sin(np.radians(ANGLES))])
+        ]
+        best = max(candidates, key=lambda centre: _room(centre, half, taken))
         centres.append(best)
         taken = np.vstack([taken, best + _box(half)])
     return centres

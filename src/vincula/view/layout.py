@@ -61,12 +61,11 @@ class Grid:
     """Rows and columns of equal panels with room for titles above each, legend and notes at the foot.
 
     Attributes:
-        rows: Number of rows.
         columns: Number of columns.
         width: Width of the figure [inch].
         panel: Width of a panel [inch].
         height: Height of a panel [inch].
-        title: Room above a panel [inch].
+        titles: Room above the panels of each row [inch].
         left: Room left of the first column [inch].
         below: Room below the last row [inch].
         between: Room between columns, and between rows [inch].
@@ -74,12 +73,11 @@ class Grid:
         foot: Room below all [inch].
     """
 
-    rows: int
     columns: int
     width: float
     panel: float
     height: float
-    title: float
+    titles: tuple[float, ...]
     left: float
     below: float
     between: float
@@ -87,16 +85,21 @@ class Grid:
     foot: float
 
     @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(self.titles)
+
+    @property
     def size(self) -> tuple[float, float]:
         """Width and height of the figure [inch]."""
-        panels = self.rows * (self.title + self.height) + (self.rows - 1) * self.between
+        panels = sum(self.titles) + self.rows * self.height + (self.rows - 1) * self.between
         return self.width, self.head + panels + self.below + self.foot
 
     def box(self, row: int, column: int) -> tuple[float, float, float, float]:
         """A panel as left, bottom, width, height in fractions of the figure."""
         width, height = self.size
         x = self.left + column * (self.panel + self.between)
-        top = self.head + row * (self.title + self.height + self.between) + self.title
+        top = self.head + sum(self.titles[: row + 1]) + row * (self.height + self.between)
         return x / width, 1.0 - (top + self.height) / height, self.panel / width, self.height / height
 
 
@@ -109,7 +112,7 @@ def wrapped(text: str, width: float, size: float = 6.5) -> list[str]:
     """Lines of a text of a font size [points] that fit a width [inch]."""
     import textwrap
 
-    return textwrap.wrap(text, max(20, int(72.0 * width / (0.48 * size)))) if text else []
+    return textwrap.wrap(text, max(20, int(72.0 * width / (0.52 * size)))) if text else []
 
 
 def columns_for(count: int, most: int) -> int:

@@ -116,7 +116,7 @@ class PlanarPanel:
         for mark in scene.contacts:
             strokes = symbols.contact(mark.normal)
             self._strokes(mark.at, strokes, fill="white", colour=style.INK, zorder=6)
-            drawn += [mark.at * self.scale + stroke.points for stroke in strokes]
+            drawn += [sampled(mark.at * self.scale + stroke.points, 2.0) for stroke in strokes]
         return np.vstack(drawn)
 
     def _draw_shape(self, shape: EllipsoidShape) -> Matrix:
@@ -152,12 +152,17 @@ class PlanarPanel:
         return middle + back * direction, middle + forth * direction
 
     def _draw_names(self, scene: Scene, obstacles: Matrix) -> None:
+        from matplotlib.patheffects import withStroke
+
         marks: list[JointMark | ContactMark] = [*scene.joints, *scene.contacts]
         anchors = [mark.at * self.scale for mark in marks]
         texts = [mark.name for mark in marks]
         for centre, text in zip(place_labels(anchors, texts, obstacles), texts, strict=True):
             x, y = centre / self.scale
-            self.axes.text(x, y, text, ha="center", va="center", fontsize=6.5, color=style.INK, zorder=10)
+            label = self.axes.text(
+                x, y, text, ha="center", va="center", fontsize=6.5, color=style.INK, zorder=10
+            )
+            label.set_path_effects([withStroke(linewidth=1.6, foreground="white")])
 
     def _strokes(self, at: Vector, strokes: list[Stroke], *, fill: str, colour: str, zorder: float) -> None:
         for stroke in strokes:

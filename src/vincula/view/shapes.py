@@ -68,11 +68,12 @@ class EllipsoidShape:
         drawn: The set of translations that is drawn, in m/s or N.
         unit: m/s or N.
         scale: Metres drawn for one unit.
+        axes: s x r semi-axes of the bounded part as drawn, in ground axes [m].
         points: n x s points of the bounded part, which a picture must hold [m].
         patches: Filled pieces.
         curves: Outlines, principal ellipses, edges.
-        unbounded: Lines along which the whole set is unbounded, as seen in the picture; those that
-            are not part of the section too.
+        unbounded: Lines through the reference point along which the drawn set is unbounded; for a
+            bounded cut of a set with one line of its own, that line as seen in the picture.
         efficiencies: All efficiencies of the ellipsoid.
         infinite_direction: The direction of the one infinite efficiency; None for none or several.
         components: Names of all components of the ellipsoid.
@@ -83,6 +84,7 @@ class EllipsoidShape:
     drawn: VectorSet
     unit: str
     scale: float
+    axes: Matrix
     points: Matrix
     patches: tuple[Patch, ...]
     curves: tuple[Curve, ...]
@@ -137,25 +139,49 @@ def shape(
     drawn = translations(ellipsoid, space)
     rims = [scale * (rim @ reference.rotation.T) for rim in _rims(drawn)]
     patches, curves = _pieces(rims, reach * (reference.rotation @ drawn.lines))
-    shadow = ellipsoid.project(list(range(space.translations))).lines
     whole = ellipsoid.set.lines
+    lines = _marked_lines(ellipsoid, drawn)
     return EllipsoidShape(
         kind=ellipsoid.kind,
         view=VIEW_OF[ellipsoid.kind],
         drawn=drawn,
         unit=drawn.units[0],
         scale=scale,
+        axes=scale * (reference.rotation @ drawn.axes),
         points=reference.at + np.vstack(rims),
         patches=tuple(Patch(reference.at + p.outline) for p in patches),
         curves=tuple(Curve(reference.at + c.points, c.open_ended) for c in curves),
         unbounded=tuple(
             Curve(reference.at + reach * np.outer([-1.0, 1.0], reference.rotation @ column), open_ended=True)
-            for column in shadow.T
+            for column in lines.T
         ),
         efficiencies=ellipsoid.efficiencies,
         infinite_direction=whole[:, 0] if whole.shape[1] == 1 else None,
         components=ellipsoid.components,
     )
+
+
+def silhouette(axes: Matrix, right: Vector, up: Vector) -> Matrix:
+    """Outline of an ellipsoid as seen by a far eye: an ellipse in the picture plane, one point a row.
+
+    Args:
+        axes: 3 x 3 semi-axes in the columns.
+        right: Unit vector to the right of the picture.
+        up: Unit vector upwards in the picture.
+    """
+    frame = np.column_stack([right, up])
+    left, values, _ = np.linalg.svd(frame.T @ axes, full_matrices=False)
+    angle = np.linspace(0.0, 2.0 * np.pi, RIM)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.asarray(circle @ (frame @ (left * values)).T)
+
+
+def _marked_lines(ellipsoid: Ellipsoid, drawn: VectorSet) -> Matrix:
+    """Lines worth a dashed mark: unique ones.  A plane has no line of its own, two lines span one."""
+    if not drawn.bounded:
+        return drawn.lines if drawn.lines.shape[1] == 1 else drawn.lines[:, :0]
+    shadow = ellipsoid.project(list(drawn.components)).lines
+    return shadow if ellipsoid.set.lines.shape[1] == 1 else shadow[:, :0]
 
 
 def _pieces(rims: Sequence[Matrix], lines: Matrix) -> tuple[list[Patch], list[Curve]]:

@@ -9,7 +9,7 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.view import style
 from vincula.view.drawables import JointMark, Scene
-from vincula.view.shapes import EllipsoidShape
+from vincula.view.shapes import EllipsoidShape, silhouette
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -26,16 +26,19 @@ class SpatialPanel:
         low: Lower corner of the cube that is shown [m].
         high: Upper corner [m].
         size: Size of the mechanism, for symbols that have a length [m].
+        direction: Elevation and azimuth of the eye [deg].
     """
 
-    def __init__(self, axes: Axes3D, low: Vector, high: Vector, size: float) -> None:
-        self.axes, self.size = axes, size
-        self.low = low
+    def __init__(
+        self, axes: Axes3D, low: Vector, high: Vector, size: float, direction: tuple[float, float]
+    ) -> None:
+        self.axes, self.size, self.direction = axes, size, direction
+        axes.view_init(elev=direction[0], azim=direction[1])
         axes.computed_zorder = False
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_zlim(low[2], high[2])
-        axes.set_box_aspect(tuple(high - low))
+        axes.set_box_aspect(tuple(high - low), zoom=1.1)
 
     def draw(self, scene: Scene, shape: EllipsoidShape | None, *, names: bool) -> None:
         """Ground, mechanism, ellipsoid, and the reference point above them all."""
@@ -43,8 +46,8 @@ class SpatialPanel:
         self._draw_links(scene)
         self._draw_joints(scene)
         self._draw_contacts(scene)
-        if shape is not None:
-            self._draw_shape(shape)
+        if shape is not None and scene.reference is not None:
+            self._draw_shape(shape, scene.reference.at)
         if scene.reference is not None:
             self.axes.plot(*scene.reference.at[:, None], "+", color="black", ms=7, mew=1.1, zorder=20)
         if names:
@@ -104,20 +107,34 @@ class SpatialPanel:
 
     def _draw_contacts(self, scene: Scene) -> None:
         for mark in scene.contacts:
-            shaft = mark.at - 0.14 * self.size * np.outer([1.0, 0.0], mark.normal)
+            shaft = mark.at - 0.09 * self.size * np.outer([1.0, 0.0], mark.normal)
             self.axes.plot(*shaft.T, color=style.INK, lw=0.8, zorder=7)
             self._marker(mark.at, "^", 4.4, "white", zorder=8)
 
-    def _draw_shape(self, shape: EllipsoidShape) -> None:
+    def _draw_shape(self, shape: EllipsoidShape, centre: Vector) -> None:
         colour = style.KINDS[shape.kind].colour
-        for patch in shape.patches:
+        solid = shape.drawn.bounded and shape.axes.shape[1] == 3
+        if solid:
+            outline = centre + silhouette(shape.axes, *self._picture_plane())
+            self._polygon(outline, colour, 0.22, zorder=10)
+            self.axes.plot(*outline.T, color=colour, lw=1.3, zorder=11)
+        for patch in () if solid else shape.patches:
             self._polygon(patch.outline, colour, 0.16, zorder=10)
         for curve in shape.curves:
-            self.axes.plot(*curve.points.T, color=colour, lw=1.0, zorder=11)
+            self.axes.plot(*curve.points.T, color=colour, lw=0.6 if solid else 1.1, zorder=11)
         for line in shape.unbounded:
             self.axes.plot(*line.points.T, color=colour, lw=1.0, ls=(0, (4, 2.2)), zorder=12)
             for end in line.points:
                 self.axes.plot(*end[:, None], "o", color=colour, ms=2.5, zorder=12)
+
+    def _picture_plane(self) -> tuple[Vector, Vector]:
+        """Right and up of the picture as unit vectors."""
+        elevation, azimuth = np.radians(self.direction)
+        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+        towards = np.array(
+            [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+        )
+        return right, np.cross(towards, right)
 
     def _marker(self, at: Vector, marker: str, size: float, fill: str, zorder: float) -> None:
         self.axes.plot(

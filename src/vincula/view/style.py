@@ -73,6 +73,8 @@ KINDS: dict[Kind, KindStyle] = {
 }
 """Ellipsoids that can be drawn at the reference point."""
 
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 FILL: dict[Role, str] = {"motor": INK, "driven": "#9a9a9a", "passive": "white", "locked": "white"}
 """Fill of a joint symbol: black for motors, grey for joints behind a transmission, white for the rest."""
 
@@ -100,7 +102,7 @@ def efficiencies_text(shape: EllipsoidShape) -> str:
     """The efficiencies of an ellipsoid in a title: equal ones counted, three digits."""
     values = [float(x) for x in shape.efficiencies]
     if not values:
-        return "no efficiencies: nothing moves or pushes"
+        return "no efficiencies"
     texts = [_number(value) for value in values]
     parts = []
     for text in dict.fromkeys(texts):
@@ -153,8 +155,10 @@ def _number(value: float) -> str:
         return "∞"
     if value == 0.0:
         return "0"
-    text = f"{value:#.3g}".removesuffix(".")
-    if "e" in text:
-        mantissa, exponent = text.split("e")
-        return f"{mantissa}·10^{int(exponent)}".replace("-", "−")
-    return text.replace("-", "−")
+    exponent = math.floor(math.log10(abs(value)))
+    if 3 <= exponent < 5:
+        return f"{float(f'{value:.3g}'):.0f}"
+    if -4 < exponent < 3:
+        return f"{value:#.3g}".removesuffix(".")
+    mantissa, power = f"{value:.2e}".split("e")
+    return f"{mantissa}·10{str(int(power)).translate(SUPERSCRIPTS)}"

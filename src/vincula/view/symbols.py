@@ -30,7 +30,7 @@ class Stroke:
     thin: bool = False
 
 
-def support(towards: Vector, size: float = 8.0) -> list[Stroke]:
+def support(towards: Vector, size: float = 6.5) -> list[Stroke]:
     """A pin's support: a triangle standing on a hatched line, the ground lying in direction `towards`."""
     turn = _turn(towards)
     triangle = np.array([[0.0, 0.0], [-0.6, -1.0], [0.6, -1.0], [0.0, 0.0]]) * size
