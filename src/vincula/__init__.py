@@ -12,6 +12,21 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from vincula.analysis.ellipsoid import Ellipsoid
+    from vincula.analysis.indices import (
+        condition_number,
+        inverse_condition_number,
+        isotropy,
+        smallest_singular_value,
+        yoshikawa_volume,
+    )
+    from vincula.analysis.manipulability import (
+        active_force_ellipsoid,
+        dual_force_ellipsoid,
+        internal_force_ellipsoid,
+        kinematic_ellipsoid,
+        passive_force_ellipsoid,
+    )
+    from vincula.analysis.result import Analysis, analyze
     from vincula.errors import (
         ClosureError,
         DuplicateNameError,
@@ -51,6 +66,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL",
+    "Analysis",
     "Body",
     "ClosureError",
     "Configuration",
@@ -89,11 +105,34 @@ __all__ = [
     "VinculaError",
     "WeightError",
     "Weights",
+    "active_force_ellipsoid",
+    "analyze",
     "characteristic_length_weights",
+    "condition_number",
+    "dual_force_ellipsoid",
+    "internal_force_ellipsoid",
+    "inverse_condition_number",
+    "isotropy",
+    "kinematic_ellipsoid",
+    "passive_force_ellipsoid",
+    "smallest_singular_value",
+    "yoshikawa_volume",
 ]
 
 _HOME = {
     "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
+    "condition_number": "vincula.analysis.indices:condition_number",
+    "inverse_condition_number": "vincula.analysis.indices:inverse_condition_number",
+    "isotropy": "vincula.analysis.indices:isotropy",
+    "smallest_singular_value": "vincula.analysis.indices:smallest_singular_value",
+    "yoshikawa_volume": "vincula.analysis.indices:yoshikawa_volume",
+    "active_force_ellipsoid": "vincula.analysis.manipulability:active_force_ellipsoid",
+    "dual_force_ellipsoid": "vincula.analysis.manipulability:dual_force_ellipsoid",
+    "internal_force_ellipsoid": "vincula.analysis.manipulability:internal_force_ellipsoid",
+    "kinematic_ellipsoid": "vincula.analysis.manipulability:kinematic_ellipsoid",
+    "passive_force_ellipsoid": "vincula.analysis.manipulability:passive_force_ellipsoid",
+    "Analysis": "vincula.analysis.result:Analysis",
+    "analyze": "vincula.analysis.result:analyze",
     "ClosureError": "vincula.errors:ClosureError",
     "DuplicateNameError": "vincula.errors:DuplicateNameError",
     "FileError": "vincula.errors:FileError",
