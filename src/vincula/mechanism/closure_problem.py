@@ -24,10 +24,10 @@ from vincula.mechanism.closure_rows import (
     joint_selection,
     whole_pose,
 )
-from vincula.mechanism.closure_values import Variables, unwound
+from vincula.mechanism.closure_values import Mask, Variables, unwound
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import axis_twists, motion, values_between
-from vincula.mechanism.kinematics import reference_position
+from vincula.mechanism.kinematics import part_frames, reference_position
 from vincula.mechanism.parts import GROUND, ContactPart, Coupling, Drive, Joint
 from vincula.mechanism.residuals import axis_linear, axis_values
 from vincula.spatial.poses import Pose
@@ -93,7 +93,7 @@ class ClosureProblem:
         self.drives = [d for d in mechanism.drives if d.name in set(drives)]
         wanted = {*kept, *_joints_of_axes(mechanism, self.couplings, self.drives)}
         outside = [j for j in mechanism.all_joints if j.name not in tree]
-        own = [j for j in outside if not j.closure and (j.name in wanted or j.type == "screw")]
+        own = [j for j in outside if j.name in wanted or j.type == "screw"]
         self.dependent = [j for j in outside if not j.closure and j not in own]
         if member:
             own.append(_member_joint(mechanism))
@@ -104,7 +104,7 @@ class ClosureProblem:
         self._blocks: list[_Block] = []
         self._sources: list[str] = []
         for joint in outside:
-            if joint not in self.dependent and not joint.closure:
+            if joint in own:
                 self._add_block(joint, whole_pose(mechanism.space.translations), own=True)
             else:
                 self._add_block(joint, joint_selection(mechanism.type_of(joint), joint.second_axis))
@@ -114,7 +114,8 @@ class ClosureProblem:
         if member:
             self._add_block(own[-1], whole_pose(mechanism.space.translations), own=True)
         self._sources += [c.name for c in self.couplings] + [d.name for d in self.drives]
-        self.row_scale = self._row_scales()
+        self.linear_rows = self._linear_rows()
+        self.row_scale = np.where(self.linear_rows, 1.0 / self.length, 1.0)
 
     @property
     def columns(self) -> int:
@@ -161,31 +162,36 @@ class ClosureProblem:
             paths[there] = paths[here] + tuple((k, sign) for k in range(columns.start, columns.stop))
         return paths
 
-    def _row_scales(self) -> Vector:
-        scale = np.ones(self.rows)
+    def _linear_rows(self) -> Mask:
+        """For every row, whether its gap is in metres."""
+        flags = np.zeros(self.rows, dtype=bool)
         for block in self._blocks:
             start = block.rows.start
-            scale[start : start + len(block.selection.linear)] = 1.0 / self.length
+            flags[start : start + len(block.selection.linear)] = True
         linear = axis_linear(self.mechanism)
         row = self.rows - len(self.couplings) - len(self.drives)
         for scalar in (*(c.rates for c in self.couplings), *(d.drives for d in self.drives)):
-            scale[row] = 1.0 / self.length if any(linear[axis] for axis in scalar) else 1.0
+            flags[row] = any(linear[axis] for axis in scalar)
             row += 1
-        return scale
+        return flags
 
     def start(self, q: Configuration) -> Vector:
-        """The state of a configuration: all unknown values; the member's pose is the tree's."""
+        """The state of a configuration; the member's pose and the values of closures are the tree's."""
         known = dict(q)
         for drive in self.drives:
             values = axis_values(self.mechanism, q)
             known[drive.name] = np.array([sum(c * values[a] for a, c in drive.drives.items())])
-        if MEMBER in self.variables.columns_of:
+        measured = [joint for joint, _, _ in self.variables.joints if joint.name not in known]
+        if measured:
             poses = self.mechanism.body_poses(q)
-            joint = self.variables.joint[MEMBER]
-            there = poses[joint.second] @ joint.frame_on_second
-            ground = Pose.identity(self.mechanism.space.translations)
-            known[MEMBER] = values_between(self.mechanism.type_of(joint), ground, there, joint.second_axis)
+            for joint in measured:
+                known[joint.name] = self._values_there(joint, poses)
         return self.variables.gathered(known)
+
+    def _values_there(self, joint: Joint, poses: Mapping[str, Pose]) -> Vector:
+        """Values of a joint from where its bodies are."""
+        first, second = part_frames(joint, poses)
+        return values_between(self.mechanism.type_of(joint), first, second, joint.second_axis)
 
     def poses(self, state: Vector) -> tuple[dict[str, Pose], dict[str, Pose]]:
         """Poses of all bodies, and the motion of every joint that is an unknown."""
@@ -300,11 +306,8 @@ class ClosureProblem:
         if self.dependent:
             poses, _ = self.poses(state)
             for joint in self.dependent:
-                kind = self.mechanism.type_of(joint)
-                first = poses[joint.first] @ joint.frame_on_first
-                second = poses[joint.second] @ joint.frame_on_second
-                found = values_between(kind, first, second, joint.second_axis)
-                values[joint.name] = unwound(kind, found, near[joint.name])
+                found = self._values_there(joint, poses)
+                values[joint.name] = unwound(self.mechanism.type_of(joint), found, near[joint.name])
         return Configuration(values)
 
 

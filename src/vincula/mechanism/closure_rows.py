@@ -126,7 +126,8 @@ def _rotation_vector_rate(error: Vector) -> Matrix:
     else:
         half = 0.5 * angle
         factor = (1.0 - half / math.tan(half)) / (angle * angle)
-    return np.eye(3) - 0.5 * cross + factor * (cross @ cross)
+    rate: Matrix = np.eye(3) - 0.5 * cross + factor * (cross @ cross)
+    return rate
 
 
 def _tilt(axis: Vector) -> tuple[Vector, Matrix]:
@@ -139,7 +140,8 @@ def _tilt(axis: Vector) -> tuple[Vector, Matrix]:
     beside = np.array([-turn[1], turn[0]])
     rate = np.outer(turn[:2], turn)
     rate += np.outer((angle / sine) * beside, _cross(axis, turn))
-    return angle * turn[:2], rate
+    error: Vector = angle * turn[:2]
+    return error, rate
 
 
 def _angle_between(axis: Vector, drawn: Vector) -> tuple[Vector, Matrix]:

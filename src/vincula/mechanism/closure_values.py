@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vincula.arrays import Vector, frozen
 from vincula.mechanism.joint_types import JointType
@@ -19,6 +20,9 @@ from vincula.mechanism.residuals import axis_linear
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
+
+Mask = NDArray[np.bool_]
+"""One truth value a rate."""
 
 
 class Variables:

@@ -1,0 +1,364 @@
+"""Closing loops: from a start, from motor positions, or from a pose of the reference member.
+
+Nothing is ever moved silently: a closed configuration says how it was found, how far it is from the
+start, how well it closes, and whether a regular solution is proved to be near (Kantorovich).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vincula.arrays import Vector
+from vincula.mechanism.closure_failure import cannot_close, length_conflicts, named_values
+from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_solver import Limits, Solution, solve
+from vincula.mechanism.closure_values import Mask
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.holding import (
+    Holding,
+    MotorValues,
+    PoseOrPoint,
+    asked,
+    held_columns,
+    holding,
+    problem_for,
+    start_values,
+)
+from vincula.mechanism.residuals import CLOSED, LoopResidual
+from vincula.numerics.lapack import svd
+from vincula.numerics.rank import decide_rank
+
+if TYPE_CHECKING:
+    from vincula.mechanism.branches import Branch
+    from vincula.mechanism.mechanism import Mechanism
+    from vincula.mechanism.singularities import Singularity
+
+LONGEST_JUMP: Final = 0.25
+"""Held values are carried to where they are asked for in steps of this size [rad, or lengths L]."""
+RADII: Final = (0.3, 0.6, 1.0, 1.5, 2.2, 3.1)
+"""Sizes of the random displacements of further starts [rad]; lengths move by a third of it times L."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Closing:
+    """How a configuration was found."""
+
+    mechanism: Mechanism
+    held: Holding
+    problem: ClosureProblem
+    solution: Solution
+    free: Mask
+    start: Vector
+
+
+class ClosedConfiguration(Configuration):
+    """A configuration that closes all loops; usable wherever a configuration is.
+
+    Attributes:
+        residuals: Gap of every loop, contact and coupling.
+        iterations: Jacobians evaluated, over all starts.
+        attempts: Starts tried.
+        held: Names of what was held.
+        at_limits: Axes that ended on a limit.
+    """
+
+    def __init__(
+        self, values: Configuration, found: _Closing, iterations: int, attempts: int
+    ) -> None:
+        super().__init__(values)
+        self._found = found
+        self.iterations, self.attempts = iterations, attempts
+        self.held = found.held.names
+        self.residuals: tuple[LoopResidual, ...] = found.mechanism.residuals(values)
+        names = found.problem.variables.names
+        self.at_limits = tuple(names[k] for k in np.flatnonzero(found.solution.held_by_limit))
+
+    @property
+    def residual(self) -> float:
+        """Largest gap, metres with angles times the characteristic length."""
+        return max((r.gap for r in self.residuals), default=0.0)
+
+    @cached_property
+    def kantorovich(self) -> float:
+        """h = residual / sigma^2 in scaled units: below 1/2 a regular closed configuration is near.
+
+        sigma is the smallest singular value of the closure Jacobian that its own rank keeps.
+        """
+        jacobian = self._found.solution.equations.jacobian[:, self._found.free]
+        sigma = decide_rank(jacobian, name="closure equations").kept
+        return float(self._found.solution.residual / (sigma * sigma))
+
+    @cached_property
+    def free_motions(self) -> int:
+        """Dimension of the motions that what was held leaves, to first order."""
+        jacobian = self._found.solution.equations.jacobian[:, self._found.free]
+        return int(jacobian.shape[1] - decide_rank(jacobian, name="closure equations").rank)
+
+    def nudged(self, size: float) -> Iterator[Configuration]:
+        """This configuration displaced along every free motion; open by the square of `size`."""
+        problem, free = self._found.problem, self._found.free
+        jacobian = self._found.solution.equations.jacobian[:, free]
+        _, values, right = svd(jacobian)
+        rank = decide_rank(jacobian, name="closure equations", values=values).rank
+        for k in range(rank, right.shape[1]):
+            step = np.zeros(problem.columns)
+            step[free] = size * right[:, k]
+            yield problem.configuration(problem.variables.moved(self._found.solution.state, step), self)
+
+    @cached_property
+    def moved(self) -> dict[str, float]:
+        """How far closing moved every axis from the start [rad, m], motors over several axes included."""
+        where = self._found.problem.variables
+        step = where.step_between(self._found.start, self._found.solution.state) * where.column_scale
+        return {
+            name: float(value)
+            for name, value in zip(where.names, step, strict=True)
+            if not name.startswith(MEMBER)
+        }
+
+    @cached_property
+    def branch(self) -> Branch:
+        """Signs that name the assembly branch: with the motors locked, and with the member locked."""
+        from vincula.mechanism.branches import branch_of
+
+        return branch_of(self._found.mechanism, self)
+
+    @cached_property
+    def singularities(self) -> tuple[Singularity, ...]:
+        """What is singular here: loops, motors, reference member; empty at a regular configuration."""
+        from vincula.mechanism.singularities import singularities_at
+
+        found: tuple[Singularity, ...] = singularities_at(self._found.mechanism, self)
+        return found
+
+    @property
+    def singular(self) -> bool:
+        """Whether anything is singular here."""
+        return bool(self.singularities)
+
+
+def close(
+    mechanism: Mechanism,
+    near: MotorValues | None = None,
+    *,
+    motors: MotorValues | None = None,
+    pose: PoseOrPoint | None = None,
+    limits: bool = False,
+    attempts: int = 25,
+    seed: int = 0,
+) -> ClosedConfiguration:
+    """A configuration that closes all loops, contacts and couplings; see `Mechanism.close`."""
+    held = holding(mechanism, motors, pose)
+    problem = _problem(mechanism, held, limits)
+    q = start_values(mechanism, near, held)
+    fixed = held_columns(problem, held)
+    bounds = Limits(*problem.variables.limits(mechanism)) if limits else None
+    origin = problem.start(mechanism.configuration(near))
+    goal = asked(problem, problem.start(q), held)
+    conflicts = length_conflicts(mechanism, q, _held_joints(mechanism, held), held.pose, held.point)
+    starts = _starts(problem, origin, goal, ~fixed, bounds, 1 if conflicts else attempts, seed)
+    best, iterations, tried = _first_closed(problem, starts, ~fixed, bounds)
+    if not is_closed(problem, best):
+        raise cannot_close(
+            mechanism,
+            problem.configuration(best.state, q),
+            _missed(problem, best),
+            conflicts=conflicts,
+            attempts=tried,
+            hints=_hints(problem, best, held, fixed, bounds, q),
+        )
+    best, more = approached(problem, best, goal, ~fixed & ~best.held_by_limit, bounds)
+    values = problem.configuration(best.state, q)
+    found = _Closing(mechanism, held, problem, best, ~fixed & ~best.held_by_limit, goal)
+    return ClosedConfiguration(values, found, iterations + more, tried)
+
+
+def _first_closed(
+    problem: ClosureProblem, starts: Iterator[Vector], free: Mask, bounds: Limits | None
+) -> tuple[Solution, int, int]:
+    """The first start that closes, else the best; with Jacobians evaluated and starts tried."""
+    best = solve(problem, next(starts), free, bounds)
+    iterations, tried = best.iterations, 1
+    while not is_closed(problem, best):
+        start = next(starts, None)
+        if start is None:
+            break
+        tried += 1
+        trial = solve(problem, start, free, bounds)
+        iterations += trial.iterations
+        if trial.residual < best.residual:
+            best = trial
+    return best, iterations, tried
+
+
+def _missed(problem: ClosureProblem, solution: Solution) -> tuple[LoopResidual, ...]:
+    """By how much the pose and the motors over several axes miss what was asked for."""
+    result = []
+    raw = solution.equations.gaps / problem.row_scale
+    for name in (MEMBER, *(drive.name for drive in problem.drives)):
+        rows = [k for k, source in enumerate(problem.sources) if source == name]
+        if rows:
+            linear = float(np.linalg.norm([raw[k] for k in rows if problem.linear_rows[k]]))
+            angular = float(np.linalg.norm([raw[k] for k in rows if not problem.linear_rows[k]]))
+            label = "the pose asked for" if name == MEMBER else f"motor {name}"
+            gap = math.hypot(linear, problem.length * angular)
+            result.append(LoopResidual(label, "loop", linear, angular, gap))
+    return tuple(result)
+
+
+def is_closed(problem: ClosureProblem, solution: Solution) -> bool:
+    """Whether a solution closes everything as well as the library asks for."""
+    return solution.residual <= 1e-2 * CLOSED
+
+
+def approached(
+    problem: ClosureProblem, solution: Solution, goal: Vector, free: Mask, bounds: Limits | None
+) -> tuple[Solution, int]:
+    """The closed state nearest to a start, down the free motions from one that is closed.
+
+    Returns:
+        The solution and the number of Jacobians evaluated.
+    """
+    iterations, fraction = 0, 1.0
+    where = problem.variables
+    distance = float(np.linalg.norm(where.step_between(solution.state, goal)[free]))
+    for _ in range(30):
+        jacobian = solution.equations.jacobian[:, free]
+        _, values, right = svd(jacobian)
+        kernel = right[:, decide_rank(jacobian, name="closure equations", values=values).rank :]
+        if kernel.shape[1] == 0:
+            break
+        step = np.zeros(problem.columns)
+        step[free] = kernel @ (kernel.T @ where.step_between(solution.state, goal)[free])
+        size = float(np.linalg.norm(step))
+        if size < 1e-8:
+            break
+        step *= fraction * min(1.0, 0.5 / size)
+        trial = solve(problem, where.moved(solution.state, step), free, bounds, iterations=12)
+        iterations += trial.iterations
+        reached = float(np.linalg.norm(where.step_between(trial.state, goal)[free]))
+        if is_closed(problem, trial) and reached < distance:
+            solution, distance = trial, reached
+        else:
+            fraction *= 0.5
+            if fraction < 0.1:
+                break
+    return solution, iterations
+
+
+def _problem(mechanism: Mechanism, held: Holding, limits: bool) -> ClosureProblem:
+    """The equations; with limits, limited joints outside the tree have values of their own."""
+    limited = [axis for j in mechanism.joints if limits and j.limits and not j.closure
+               for axis in mechanism.type_of(j).axis_names(j.name)]  # fmt: skip
+    return problem_for(mechanism, held, limited)
+
+
+def _starts(
+    problem: ClosureProblem,
+    origin: Vector,
+    goal: Vector,
+    free: Mask,
+    bounds: Limits | None,
+    attempts: int,
+    seed: int,
+) -> Iterator[Vector]:
+    """The start; held values carried there in small steps; then random displacements, growing."""
+    where = problem.variables
+    carried = _carried(problem, origin, goal, free, bounds)
+    if carried is not None:
+        yield carried
+    yield goal
+    rng = np.random.default_rng(seed)
+    metres = where.column_scale != 1.0
+    for k in range(attempts - 1):
+        radius = RADII[min(k * len(RADII) // max(attempts - 1, 1), len(RADII) - 1)]
+        step = rng.uniform(-radius, radius, problem.columns)
+        step[metres] /= 3.0
+        step[~free] = 0.0
+        yield where.moved(goal, step)
+
+
+def _carried(
+    problem: ClosureProblem, origin: Vector, goal: Vector, free: Mask, bounds: Limits | None
+) -> Vector | None:
+    """The start with held values carried in small steps, when they are far and `origin` is closed."""
+    where = problem.variables
+    way = where.step_between(origin, goal)
+    way[free] = 0.0
+    count = int(np.ceil(np.abs(way).max(initial=0.0) / LONGEST_JUMP))
+    if count <= 1 or float(np.linalg.norm(problem.gaps(origin))) > CLOSED:
+        return None
+    state = origin
+    for _ in range(count):
+        solution = solve(problem, where.moved(state, way / count), free, bounds, iterations=20)
+        if not is_closed(problem, solution):
+            return None
+        state = solution.state
+    return asked_exactly(problem, state, goal, free)
+
+
+def asked_exactly(problem: ClosureProblem, state: Vector, goal: Vector, free: Mask) -> Vector:
+    """The state with held values copied from the goal, free of rounding."""
+    where = problem.variables
+    result = state.copy()
+    for name, place in where.values_of.items():
+        if not free[where.columns_of[name]].any():
+            result[place] = goal[place]
+    return result
+
+
+def _held_joints(mechanism: Mechanism, held: Holding) -> set[str]:
+    """Joints all of whose axes are held or locked."""
+    still = {*mechanism.lock, *held.axes}
+    whole = {
+        joint.name
+        for joint in mechanism.all_joints
+        if mechanism.type_of(joint).axes
+        and still.issuperset(mechanism.type_of(joint).axis_names(joint.name))
+    }
+    return whole | set(held.joints)
+
+
+def _hints(
+    problem: ClosureProblem,
+    best: Solution,
+    held: Holding,
+    held_mask: Mask,
+    bounds: Limits | None,
+    q: Configuration,
+) -> tuple[str, ...]:
+    """What would close: without the limits, or with what is held given free."""
+    hints = []
+    everything = np.ones(problem.columns, dtype=bool)
+    if bounds is not None:
+        free = solve(problem, best.state, ~held_mask)
+        if is_closed(problem, free):
+            values = problem.variables.scalar_values(free.state)
+            over = np.flatnonzero((values < bounds.lower) | (values > bounds.upper))
+            names = [problem.variables.names[k] for k in over]
+            shown = ", ".join(f"{n} = {values[k]:.6g}" for n, k in zip(names, over, strict=True))
+            return (f"It closes beyond the limits, at {shown}",)
+    if held_mask.any():
+        free = solve(problem, best.state, everything, bounds)
+        if is_closed(problem, free):
+            nearest = problem.configuration(free.state, q)
+            names = [name for name in (*held.joints, *_locked_joints(problem.mechanism)) if name in nearest]
+            shown = f", near {named_values(names, nearest)}" if names else ""
+            hints.append(f"It closes when nothing is held{shown}")
+    return tuple(hints)
+
+
+def _locked_joints(mechanism: Mechanism) -> list[str]:
+    """Joints with a locked axis."""
+    locked = set(mechanism.lock)
+    return [
+        joint.name
+        for joint in mechanism.all_joints
+        if locked.intersection(mechanism.type_of(joint).axis_names(joint.name))
+    ]

@@ -1,0 +1,156 @@
+"""What is singular at a closed configuration, of which type, and which joints take part.
+
+A block of the closure equations is singular where its rank is lower than at closed configurations
+near by: the generic rank is measured, not counted, so redundant rows and paradoxical mechanisms are
+not mistaken for singular ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+from vincula.errors import listing
+from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_solver import solve
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.holding import Holding, problem_for
+from vincula.mechanism.watching import SingularityKind, Watch, decided, locked, participation, watches
+from vincula.numerics.lapack import svd
+from vincula.numerics.rank import negligible
+
+if TYPE_CHECKING:
+    from vincula.mechanism.mechanism import Mechanism
+
+NEARBY: Final = 0.03
+"""How far away closed configurations are looked at to learn the generic rank [rad, or lengths L]."""
+SHARE: Final = 1e-5
+"""Accuracy to which a singular direction is known; smaller parts of it are none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Singularity:
+    """One way in which a configuration is singular.
+
+    Attributes:
+        kind: `platform free` (the member moves with the motors locked), `motors without authority`
+            (motors move with the member locked), or `internal` (loops or passive joints alone).
+        joints: Share of every joint in the singular direction, largest first.
+        motors: The motors that it is about.
+        member: Name of the reference member, empty when none is named.
+        member_share: Share of the member's motion.
+    """
+
+    kind: SingularityKind
+    joints: Mapping[str, float]
+    motors: tuple[str, ...]
+    member: str
+    member_share: float
+
+    def __str__(self) -> str:
+        shares = listing([f"{name} {share:.2f}" for name, share in self.joints.items()], 6)
+        motors = listing(self.motors, 6)
+        if self.kind == "platform free":
+            return f"{self.member!r} becomes free: it can move with {motors} locked (joints {shares})"
+        if self.kind == "motors without authority":
+            return f"motors lose authority: they can move with {self.member!r} locked (joints {shares})"
+        return f"inner degeneracy: joints gain a motion of their own (joints {shares})"
+
+
+def singularities_at(
+    mechanism: Mechanism, q: Configuration, motors: Iterable[str] | None = None
+) -> tuple[Singularity, ...]:
+    """What is singular at a closed configuration.
+
+    Args:
+        mechanism: The mechanism.
+        q: A closed configuration.
+        motors: Axes and drives that count as motors; the active ones by default.
+    """
+    chosen = tuple(mechanism.active if motors is None else motors)
+    member = mechanism.reference is not None
+    problem = problem_for(mechanism, Holding({}, {}, {}), chosen, member=member)
+    state = problem.start(q)
+    here = problem.equations(state)
+    residual = float(np.linalg.norm(here.gaps))
+    around = _neighbours(problem, state, here.jacobian, residual)
+    found: list[Singularity] = []
+    for watch in watches(problem, chosen, locked(problem)):
+        lost = _lost_direction(here.jacobian[:, watch.columns], residual, watch, around)
+        if lost is not None:
+            found.append(classified(problem, watch, lost, chosen))
+    return _distinct(found)
+
+
+def classified(
+    problem: ClosureProblem, watch: Watch, direction: Vector, motors: tuple[str, ...]
+) -> Singularity:
+    """The singularity with a given singular direction of a block."""
+    shares = dict(participation(problem, watch.columns, direction))
+    full = np.zeros(problem.columns)
+    full[watch.columns] = direction
+    where = problem.variables
+    part = float(np.linalg.norm(full[where.columns_of[MEMBER]])) if MEMBER in where.columns_of else 0.0
+    driven = float(np.linalg.norm([full[where.column[name]] for name in motors]))
+    kind: SingularityKind = "internal"
+    if watch.name in ("motors locked", "held") and not negligible(part, 1.0, SHARE):
+        kind = "platform free"
+    elif watch.name == "member locked" and not negligible(driven, 1.0, SHARE):
+        kind = "motors without authority"
+    shares.pop(MEMBER, None)
+    reference = problem.mechanism.reference
+    return Singularity(kind, shares, motors, reference.body if reference else "", part)
+
+
+def _neighbours(
+    problem: ClosureProblem, state: Vector, jacobian: Matrix, residual: float
+) -> list[tuple[Matrix, bool]]:
+    """Jacobians at closed states near by, and whether each was really away from this one."""
+    free = ~locked(problem)
+    _, values, right = svd(jacobian[:, free])
+    kernel = right[:, decided(jacobian[:, free], residual, values).rank :]
+    if kernel.shape[1] == 0:
+        return []
+    rng = np.random.default_rng(0)
+    found = []
+    for size in (NEARBY, -NEARBY):
+        mix = rng.normal(size=kernel.shape[1])
+        step = np.zeros(problem.columns)
+        step[free] = size * (kernel @ (mix / np.linalg.norm(mix)))
+        near = solve(problem, problem.variables.moved(state, step), free, iterations=40)
+        away = float(np.linalg.norm(problem.variables.step_between(state, near.state)))
+        found.append((near.equations.jacobian, away > 0.1 * NEARBY and near.residual < 1e-10))
+    return found
+
+
+def _lost_direction(
+    jacobian: Matrix, residual: float, watch: Watch, around: list[tuple[Matrix, bool]]
+) -> Vector | None:
+    """The direction that is unconstrained here and constrained near by; None at a regular block."""
+    _, values, right = svd(jacobian)
+    rank = decided(jacobian, residual, values).rank
+    kernel = right[:, rank:]
+    for other, away in around:
+        if not away:
+            return kernel[:, 0] if watch.name == "loops" and kernel.shape[1] else None
+        block = other[:, watch.columns]
+        _, _, there = svd(block)
+        generic = decided(block, 0.0).rank
+        if generic > rank:
+            rest = kernel - there[:, generic:] @ (there[:, generic:].T @ kernel)
+            _, _, mix = svd(rest)
+            direction: Vector = kernel @ mix[:, 0]
+            return direction / np.linalg.norm(direction)
+    return None
+
+
+def _distinct(found: list[Singularity]) -> tuple[Singularity, ...]:
+    """One singularity of every kind: a degenerate loop shows in every block."""
+    kinds: dict[str, Singularity] = {}
+    for one in found:
+        kinds.setdefault(one.kind, one)
+    return tuple(kinds.values())
