@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from vincula.cli.options import debug_option, output_options
+from vincula.cli.options import output_options
 from vincula.cli.output import print_json
 
 if TYPE_CHECKING:
@@ -78,9 +78,12 @@ def _entry_page(entry: Entry) -> Page:
 
 
 @click.command("schema")
-@debug_option
-def schema_command() -> None:
-    """Print the JSON schema of the native file format."""
+@output_options
+def schema_command(as_json: bool) -> None:
+    """Print the JSON schema of the native file format, with or without --json.
+
+    Editors that know JSON schema complete and check native files with it.
+    """
     from vincula.files.schema import json_schema
 
     print_json(json_schema())

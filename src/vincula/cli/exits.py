@@ -24,6 +24,8 @@ DOUBTFUL: Final = 3
 """A rank is not decided, and `--strict` was given."""
 STORAGE: Final = 4
 """Results cannot be stored or read back."""
+FAULT: Final = 70
+"""An error that no code foresaw: a fault in vincula, never an answer about the mechanism."""
 INTERRUPTED: Final = 130
 
 _WRITTEN_BY_THE_USER = (

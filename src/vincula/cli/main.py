@@ -14,7 +14,7 @@ from typing import Any, Final
 import click
 
 from vincula import __version__
-from vincula.cli.exits import DONE, INTERRUPTED, USAGE, exit_code
+from vincula.cli.exits import DONE, FAULT, INTERRUPTED, USAGE, exit_code
 from vincula.errors import VinculaError
 
 COMMANDS: Final = {
@@ -138,9 +138,7 @@ def main() -> None:
 
 
 def _unexpected(kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
-    """One line instead of a traceback for an error that no code foresaw."""
-    if issubclass(kind, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return
+    """One line instead of a traceback for an error that no code foresaw, and an exit code of its own."""
     click.echo(f"internal error: {kind.__name__}: {error}", err=True)
     click.echo("This is a fault in vincula; run again with --debug to see where.", err=True)
+    sys.exit(FAULT)

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from vincula.mechanism.configuration import Configuration
     from vincula.mechanism.mechanism import Mechanism
     from vincula.model import LinearModel
-    from vincula.weights import Weights
 
 Result = TypeVar("Result")
 
@@ -49,18 +48,19 @@ class Subject:
             return self
         from vincula.files.weights import read_weights
 
-        weights: Weights = read_weights(text, self.mechanism)
+        weights = _usage("--weights", lambda: read_weights(text, self.mechanism))
         return replace(self, mechanism=self.mechanism.with_weights(weights))
 
     def linearize(self) -> LinearModel:
         """J_a, J_p and G at the configuration.
 
         Raises:
-            MissingReferenceError: No reference member; lists the bodies and the option.
+            click.UsageError: No reference member; lists the bodies and the option.
             ClosureError: A loop is open.
         """
         if self.mechanism.reference is None:
-            raise MissingReferenceError(body.name for body in self.mechanism.bodies)
+            missing = MissingReferenceError(body.name for body in self.mechanism.bodies)
+            raise click.UsageError(f"{missing}. Say --reference BODY.")
         return self.mechanism.linearize(self.configuration)
 
 
@@ -90,7 +90,9 @@ def read_subject(
     mechanism = with_reference(mechanism, reference, axes)
     if tolerance is not None:
         mechanism = mechanism.with_tolerance(*tolerances(tolerance))
-    configuration = mechanism.home if at is None else read_configuration(at, mechanism)
+    configuration = mechanism.home
+    if at is not None:
+        configuration = _usage("--at", lambda: read_configuration(at, mechanism))
     return Subject(file, mechanism, configuration, report)
 
 
