@@ -100,22 +100,22 @@ class Constraints:
         return name
 
     def _connect(self, index: int) -> None:
-        data = self._model.eq_data[index]
-        self._close(index, "spherical", Pose.at(data[0:3]), Pose.at(data[3:6]))
+        self._close(index, "spherical")
 
     def _weld(self, index: int) -> None:
         """Six rows; three where the file scales the rotations of the weld by zero."""
-        data = self._model.eq_data[index]
-        kind = "spherical" if float(data[10]) == 0.0 else "fixed"
-        self._close(index, kind, Pose.from_quaternion_wxyz(data[6:10], data[3:6]), Pose.at(data[0:3]))
+        self._close(index, "spherical" if float(self._model.eq_data[index][10]) == 0.0 else "fixed")
 
-    def _close(self, index: int, kind: str, on_first: Pose, on_second: Pose) -> None:
+    def _close(self, index: int, kind: str) -> None:
         model, names = self._model, self._names
         one, two = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
         if int(model.eq_objtype[index]) == _SITE:
-            on_first = Pose.from_quaternion_wxyz(model.site_quat[one], model.site_pos[one])
-            on_second = Pose.from_quaternion_wxyz(model.site_quat[two], model.site_pos[two])
+            on_first, on_second = (
+                Pose.from_quaternion_wxyz(model.site_quat[site], model.site_pos[site]) for site in (one, two)
+            )
             one, two = int(model.site_bodyid[one]), int(model.site_bodyid[two])
+        else:
+            on_first, on_second = self._compiled_anchors(index)
         self.closures.append(
             Joint(
                 self._loop_name(index),
@@ -128,6 +128,13 @@ class Constraints:
                 cut="contact" if kind == "spherical" else None,
             )
         )
+
+    def _compiled_anchors(self, index: int) -> tuple[Pose, Pose]:
+        """The frames on both bodies that MuJoCo closes at `qpos0`, or where `relpose` puts them."""
+        data = self._model.eq_data[index]
+        if int(self._model.eq_type[index]) == _CONNECT:
+            return Pose.at(data[0:3]), Pose.at(data[3:6])
+        return Pose.from_quaternion_wxyz(data[6:10], data[3:6]), Pose.at(data[0:3])
 
     def _joint(self, index: int) -> None:
         one, two = int(self._model.eq_obj1id[index]), int(self._model.eq_obj2id[index])
