@@ -61,7 +61,8 @@ test: lint
 	$(BIN)/pytest -q -n $(WORKERS)
 
 bench: $(VENV)/.dev-ready
-	$(BIN)/python -m benchmarks
+	$(BIN)/python benchmarks/single.py
+	$(BIN)/python benchmarks/rank_table.py
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

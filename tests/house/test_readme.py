@@ -1,7 +1,7 @@
 """What the README and the pages show runs, block after block, as a reader would type it.
 
 A block that needs something the checkout does not hold (a user's own file) opens with
-```python no-run.
+```python no-run.  An ```output block is what the blocks before it print.
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def test_python_blocks_run(
     names: dict[str, object] = {"__name__": "page"}
     for line, code in blocks(page, "python"):
         exec(compile("\n" * (line - 1) + code, str(page), "exec"), names)
-    capsys.readouterr()
+    printed = capsys.readouterr().out
+    for line, text in blocks(page, "output"):
+        assert text in printed, f"line {line}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
