@@ -7,10 +7,15 @@ contact forces and torques (eqs. 22-23).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from vincula.arrays import Matrix, Vector
 from vincula.model import LinearModel
+from vincula.numerics.echelon import graded_pivots, refined_kernel
+from vincula.numerics.subspaces import kernel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,6 +31,8 @@ class Relation:
         zero: Dimension of the pairs with task side zero, from the ledger.
         orthonormal: Whether the stacked basis (task; motor) is orthonormal.
         doubt: Relative uncertainty of the subspace.
+        graded: For given sizes of the weights of the task and of the motor components (scaled), the
+            parts of the relation to high relative accuracy; None where there is no such basis.
     """
 
     task: Matrix
@@ -36,6 +43,29 @@ class Relation:
     zero: int
     orthonormal: bool
     doubt: float
+    graded: Callable[[Vector, Vector], GradedParts] | None = None
+
+    @property
+    def size(self) -> int:
+        """Dimension k of the relation."""
+        return int(self.task.shape[1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GradedParts:
+    """Bases of the parts of a relation, accurate entry by entry, for weights of very different size.
+
+    Attributes:
+        infinite: t x n_inf, motor side zero.
+        finite_task: t x n_f.
+        finite_motor: r x n_f; the finite part is any complement of the other two.
+        zero: r x n_zero, task side zero.
+    """
+
+    infinite: Matrix
+    finite_task: Matrix
+    finite_motor: Matrix
+    zero: Matrix
 
 
 def kinematic_relation(model: LinearModel) -> Relation:
@@ -53,6 +83,37 @@ def kinematic_relation(model: LinearModel) -> Relation:
         zero=counts.redundancy,
         orthonormal=True,
         doubt=ledger.subspace_doubt,
+        graded=lambda task, motor: _graded_motions(model, task, motor),
+    )
+
+
+def _graded_motions(model: LinearModel, task_sizes: Vector, motor_sizes: Vector) -> GradedParts:
+    """Motions in echelon form on pivots that follow the weights: numerics page, step 5."""
+    ledger, subspaces = model.ledger, model.ledger.subspaces
+    n_a, n_p = len(model.motors), len(model.passives)
+    motions, _ = subspaces.motions_and_equilibria
+    k, counts = motions.shape[1], ledger.summary
+    free = motions[n_a:] @ kernel(motions[:n_a], k - counts.indeterminacy)
+    idle = motions[:n_a] @ kernel(motions[n_a:], k - counts.redundancy)
+    passive = subspaces.kernel("passive")
+    held = graded_pivots(passive, np.ones(n_p), passive.shape[1])
+    of_free = graded_pivots(free, task_sizes, counts.indeterminacy)
+    of_idle = graded_pivots(idle, motor_sizes, counts.redundancy)
+    taken = [*of_idle, *(n_a + i for i in of_free)]
+    rest = graded_pivots(motions, np.concatenate([motor_sizes, task_sizes]), counts.coordinated, taken)
+    pivots = [i if i < n_a else i + n_p for i in (*taken, *rest)]
+    finite = refined_kernel(ledger.matrix("all"), ledger.rank("all"), pivots, [n_a + j for j in held])
+    infinite = refined_kernel(
+        ledger.matrix("passive+member"), ledger.rank("passive+member"), [n_p + i for i in of_free], held
+    )
+    zero = refined_kernel(
+        ledger.matrix("active+passive"), ledger.rank("active+passive"), of_idle, [n_a + j for j in held]
+    )
+    return GradedParts(
+        infinite=infinite[n_p:],
+        finite_task=finite[n_a + n_p :, len(taken) :],
+        finite_motor=finite[:n_a, len(taken) :],
+        zero=zero[:n_a],
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from vincula.analysis.relation import Relation
 from vincula.arrays import Matrix, Vector
 from vincula.numerics.csd import angles_of_pair, deflated
+from vincula.numerics.csd_graded import angles_of_graded_pair
 from vincula.numerics.lapack import svd
 from vincula.numerics.metric import Metric
 from vincula.numerics.rank import decide_rank
@@ -53,6 +54,7 @@ class _Parts:
     finite_motor: Matrix
     zero: Matrix
     undefined: int
+    graded: bool = False
 
 
 def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
@@ -64,14 +66,14 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
         motor: Metric of the motor side.
     """
     basis = _sectioned(relation, task, motor)
-    parts = _split(basis, task, motor)
+    parts = _graded(basis, task, motor) or _split(basis, task, motor)
     weigh_task = task.factor * basis.task_factor
     weigh_motor = motor.factor * basis.motor_factor
     # Worst case over what is free, best case over what is redundant (eqs. 11-13): finite directions
     # are taken orthogonal, in the metrics, to the infinite and to the zero ones.
     t, free, task_basis = deflated(weigh_task @ parts.finite_task, weigh_task @ parts.infinite)
     s, idle, motor_basis = deflated(weigh_motor @ parts.finite_motor, weigh_motor @ parts.zero)
-    angles = angles_of_pair(t, s)
+    angles = angles_of_graded_pair(t, s) if parts.graded else angles_of_pair(t, s)
     task_rest = task_basis @ svd(angles.task)[0][:, t.shape[1] :]
     motor_rest = motor_basis @ svd(angles.motor)[0][:, s.shape[1] :]
     task_side = task.inverse @ (task_basis @ angles.task)
@@ -87,6 +89,35 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
         unused=_oriented(motor.inverse @ motor_rest),
         undefined=parts.undefined,
     )
+
+
+GRADED = 100.0
+"""Weights whose roots differ by more than this call for a basis that is accurate entry by entry."""
+
+
+def _graded(relation: Relation, task: Metric, motor: Metric) -> _Parts | None:
+    """The parts for diagonal weights of very different size; None where weights are of one size.
+
+    One graded side needs the accurate basis only; two need long arithmetic as well.
+    """
+    if task.unit and motor.unit and _grading(relation.task_factor, relation.motor_factor) <= GRADED:
+        return None
+    weights = task.diagonal, motor.diagonal
+    regular = relation.infinite >= 0 and relation.size >= relation.infinite + relation.zero
+    if relation.graded is None or not regular or not (task.definite and motor.definite):
+        return None
+    if weights[0] is None or weights[1] is None:
+        return None
+    sizes = np.sqrt(weights[0]) * relation.task_factor, np.sqrt(weights[1]) * relation.motor_factor
+    if max(_grading(sizes[0]), _grading(sizes[1])) <= GRADED:
+        return None
+    found = relation.graded(*sizes)
+    both = min(_grading(sizes[0]), _grading(sizes[1])) > GRADED
+    return _Parts(found.infinite, found.finite_task, found.finite_motor, found.zero, 0, graded=both)
+
+
+def _grading(*sizes: Vector) -> float:
+    return max((float(x.max() / x.min()) for x in sizes if len(x)), default=1.0)
 
 
 def _sectioned(relation: Relation, task: Metric, motor: Metric) -> Relation:
