@@ -82,15 +82,14 @@ class _Builder:
     def add_cut(self, cut: CutJoint) -> None:
         """Rows of a cut: the joint's own selector, or complete rows (in ground axes) at the cut point."""
         joint, frame = cut.joint, self.frames.of_joint[cut.joint.name]
-        limb, other = (joint.first, joint.second) if cut.limb_sign > 0 else (joint.second, joint.first)
-        sides = [(limb, 1), (other, -1)]
+        sides = [(cut.limb_body, 1), (cut.other_body, -1)]
         if cut.kind == "contact" and self._declared_point(cut) is None:
             kind = self.mechanism.type_of(joint)
             blocked = joint_rows(kind, joint.lead, joint.second_axis)
             point = frame + 1
             self._add_rows(joint.name, cut.role, blocked, frame, point, point, sides)
         else:
-            point = self._cut_point(cut, other, frame + (1 if cut.limb_sign > 0 else 0))
+            point = self._cut_point(cut, frame + (1 if cut.limb_sign > 0 else 0))
             own = [(k, cut.limb_sign) for k in self.of_joint.get(joint.name, ())]
             self._add_rows(joint.name, cut.role, self._complete_rows(), 0, point, point, sides, own)
         self._cuts.append((cut, point))
@@ -109,9 +108,9 @@ class _Builder:
         asked = reference.cuts.get(cut.joint.name) if reference else None
         return None if asked is None else asked.at
 
-    def _cut_point(self, cut: CutJoint, body: str, centre: int) -> int:
+    def _cut_point(self, cut: CutJoint, centre: int) -> int:
         """Frame of the declared cut point, which is fixed on the body that is cut; else the centre's."""
-        declared = self._declared_point(cut)
+        declared, body = self._declared_point(cut), cut.other_body
         if declared is None:
             return centre
         point = np.array(declared, dtype=float)

@@ -57,8 +57,9 @@ class Configuration(Mapping[str, Vector]):
             if joint not in merged:
                 raise UnknownNameError("joint with a configuration value", joint, merged)
             old = merged[joint]
-            flat = np.atleast_1d(np.asarray(value, dtype=float))
-            new = checked(flat, f"value of joint {joint!r}", (len(old),))
+            what = f"value of joint {joint!r}"
+            new = np.atleast_1d(checked(value, what, (None,) * min(np.ndim(value), 1)))
+            new = checked(new, what, (len(old),))
             merged[joint] = _normalised(joint, new, len(old))
         return Configuration(merged)
 

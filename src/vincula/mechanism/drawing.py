@@ -7,7 +7,7 @@ drawn parts into resolved ones; it serves new mechanisms and additions to loaded
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -18,6 +18,7 @@ from vincula.mechanism import names as naming
 from vincula.mechanism.joint_types import joint_type
 from vincula.mechanism.parts import (
     GROUND,
+    SMALLEST_DIRECTION,
     Body,
     ContactPart,
     Cut,
@@ -32,10 +33,6 @@ from vincula.spatial.space import PLANAR, Space
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
-
-SMALLEST_DIRECTION = 1e-9
-"""Directions shorter than this are refused: nobody means them, and they amplify rounding."""
-
 
 @dataclass(frozen=True, slots=True)
 class In:
@@ -141,7 +138,6 @@ class Drawing:
         self.contacts: tuple[ContactPart, ...] = base.contacts if base else ()
         self._pose: dict[str, Pose] = {GROUND: Pose.identity(space.translations)}
         self._pose.update({body.name: body.pose for body in self.bodies})
-        self._free_to_use_world = "world" not in self._pose
 
     def add(
         self,
@@ -155,11 +151,31 @@ class Drawing:
             self._declare(body)
         parts: tuple[DrawnJoint | Contact, ...] = (*joints, *contacts)
         for part in parts:
-            for name in (part.first, part.second):
+            for name in map(self.body_name, (part.first, part.second)):
                 if name not in self._pose:
                     self._new_body(name, Pose.identity(self.space.translations))
-        self.joints += tuple(self.joint(j) for j in joints)
+        self.joints += tuple(self.joint(self._with_place(j, parts)) for j in joints)
         self.contacts += tuple(self.contact(c) for c in contacts)
+
+    def body_name(self, name: str) -> str:
+        """The body that a name means: `world` is the ground where no body is called so."""
+        return GROUND if name == "world" and name not in self._pose else name
+
+    def _with_place(self, slide: DrawnJoint, parts: Sequence[DrawnJoint | Contact]) -> DrawnJoint:
+        """A slide drawn without a place, put amid the other joints and contacts of its bodies.
+
+        Its motion does not depend on where it is, but pictures, cut points and the characteristic
+        length do: a slide left at the origin would make them depend on where the origin is.
+        """
+        if slide.type != "prismatic" or slide.at is not None:
+            return slide
+        bodies = {slide.first, slide.second} - {GROUND, "world"}
+        near = [
+            self.point(part.at, f"{part.name!r}: at")
+            for part in parts
+            if part.at is not None and bodies & {part.first, part.second}
+        ]
+        return replace(slide, at=np.mean(near, axis=0)) if near else slide
 
     def _declare(self, body: DrawnBody) -> None:
         if body.name in self._pose:
@@ -228,7 +244,9 @@ class Drawing:
         """The resolved joint of a drawn one."""
         kind = joint_type(drawn.type, self.space)
         what = f"joint {drawn.name!r}"
-        at = np.zeros(self.space.translations) if drawn.at is None else self.point(drawn.at, f"{what}: at")
+        at = np.zeros(self.space.translations)
+        if drawn.at is not None or drawn.type not in ("prismatic", "fixed", "free"):
+            at = self.point(_given(drawn.at, what, "at"), f"{what}: at")
         rotation = np.eye(self.space.translations)
         second_axis = np.array([1.0, 0.0, 0.0])
         if self.space is PLANAR:
@@ -242,18 +260,17 @@ class Drawing:
                 raise ModelError(f"{what}: the two axes of a universal joint are parallel")
             rotation = frame_with_z(one, two)
             second_axis = rotation.T @ two
-        elif drawn.axis is not None and drawn.type not in ("spherical", "fixed", "free"):
-            rotation = frame_with_z(self.direction(drawn.axis, f"{what}: axis"))
-        if drawn.type == "screw" and not (np.isfinite(drawn.lead) and drawn.lead != 0.0):
-            raise ModelError(f"{what}: a screw needs a lead, its advance a turn in metres, not {drawn.lead}")
+        elif drawn.type not in ("spherical", "fixed", "free"):
+            rotation = frame_with_z(self.direction(_given(drawn.axis, what, "axis"), f"{what}: axis"))
         pose = Pose.at(at, rotation)
+        first, second = self.body_name(drawn.first), self.body_name(drawn.second)
         return Joint(
             name=drawn.name,
             type=drawn.type,
-            first=drawn.first,
-            second=drawn.second,
-            frame_on_first=self._on_body(drawn.first, pose),
-            frame_on_second=self._on_body(drawn.second, pose),
+            first=first,
+            second=second,
+            frame_on_first=self._on_body(first, pose),
+            frame_on_second=self._on_body(second, pose),
             home=tuple(kind.zero),
             lead=drawn.lead,
             second_axis=second_axis,
@@ -270,13 +287,14 @@ class Drawing:
         else:
             rotation = frame_with_z(normal, self._line(drawn, normal, what))
         pose = Pose.at(self.point(drawn.at, f"{what}: at"), rotation)
+        first, second = self.body_name(drawn.first), self.body_name(drawn.second)
         return ContactPart(
             drawn.name,
             drawn.type,
-            drawn.first,
-            drawn.second,
-            self._on_body(drawn.first, pose),
-            self._on_body(drawn.second, pose),
+            first,
+            second,
+            self._on_body(first, pose),
+            self._on_body(second, pose),
             drawn.friction,
         )
 

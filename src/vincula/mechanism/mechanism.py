@@ -106,7 +106,9 @@ class Mechanism:
         Raises:
             ModelError: Any part that cannot be used; see the subclasses.
         """
-        return _drawn(
+        from vincula.mechanism.drawn_mechanism import draw
+
+        return draw(
             PLANAR, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name
         )
 
@@ -129,7 +131,9 @@ class Mechanism:
         Raises:
             ModelError: Any part that cannot be used; see the subclasses.
         """
-        return _drawn(
+        from vincula.mechanism.drawn_mechanism import draw
+
+        return draw(
             SPATIAL, joints, contacts, couplings, drives, bodies, reference, active, lock, weights, name
         )
 
@@ -233,17 +237,15 @@ class Mechanism:
         return replace(self, weights=weights)
 
     def with_configuration(self, values: Mapping[str, float | Sequence[float] | Vector]) -> Mechanism:
-        """The same mechanism with another home configuration; body frames move along.
+        """The same mechanism with another home configuration; bodies and cut points move along.
 
         Raises:
             UnknownNameError: A joint that does not exist.
             ShapeError: The wrong number of values.
         """
-        q = self.configuration(values)
-        poses = self.body_poses(q)
-        bodies = tuple(replace(body, pose=poses[body.name]) for body in self.bodies)
-        joints = tuple(replace(j, home=tuple(q[j.name])) if j.name in q else j for j in self.joints)
-        return replace(self, bodies=bodies, joints=joints)
+        from vincula.mechanism.home import at_home
+
+        return at_home(self, self.configuration(values))
 
     def with_tolerance(self, length: float = 0.0, angle: float = 0.0) -> Mechanism:
         """The same mechanism made with manufacturing tolerances [m, rad]."""
@@ -346,37 +348,3 @@ class Mechanism:
         from vincula.mechanism.jacobians import linearize
 
         return linearize(self, self.configuration(q))
-
-
-def _drawn(
-    space: Space,
-    joints: Sequence[DrawnJoint],
-    contacts: Sequence[Contact],
-    couplings: Sequence[Coupling],
-    drives: Sequence[Drive],
-    bodies: Sequence[DrawnBody],
-    reference: Reference | None,
-    active: Iterable[str] | str | _All,
-    lock: Iterable[str] | str,
-    weights: Weights | None,
-    name: str,
-) -> Mechanism:
-    from vincula.mechanism.drawing import Drawing
-
-    drawing = Drawing(space)
-    drawing.add(bodies=bodies, joints=joints, contacts=contacts)
-    mechanism = Mechanism(
-        space=space,
-        bodies=drawing.bodies,
-        joints=drawing.joints,
-        contacts=drawing.contacts,
-        frames=drawing.frames,
-        couplings=tuple(couplings),
-        drives=tuple(drives),
-        weights=weights,
-        name=name,
-    )
-    mechanism = mechanism.with_lock(lock)
-    if reference is not None:
-        mechanism = replace(mechanism, reference=drawing.reference(reference, mechanism))
-    return mechanism.with_active(active)

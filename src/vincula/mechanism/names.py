@@ -47,7 +47,8 @@ def resolve_motors(mechanism: Mechanism, names: Iterable[str] | str | _All) -> t
         if name in drives:
             found: tuple[str, ...] = (name,)
         elif name in mechanism.motors:
-            found = (mechanism.motors[name],)
+            target = mechanism.motors[name]
+            found = (target,) if target in drives else _axes_of(mechanism, target, "axis", ())
         else:
             found = _axes_of(mechanism, name, "motor, joint or axis", (*drives, *mechanism.motors))
         for axis in found:
@@ -110,6 +111,6 @@ def default_point(mechanism: Mechanism, body: str) -> Vector:
     points = [
         (part.frame_on_first if part.first == body else part.frame_on_second).position
         for part in parts
-        if body in (part.first, part.second) and part.type != "free"
+        if body in (part.first, part.second) and part.type not in ("free", "fixed")
     ]
     return np.asarray(np.mean(points, axis=0)) if points else zero

@@ -12,11 +12,19 @@ from typing import Final, Literal
 
 import numpy as np
 
-from vincula.arrays import Vector, frozen
+from vincula.arrays import Vector, checked, frozen
+from vincula.errors import ModelError
 from vincula.spatial.poses import Pose
 
 GROUND: Final = "ground"
 """Name of the fixed body."""
+
+
+ROTATION_ERROR: Final = 1e-6
+"""Largest error of a rotation matrix or unit vector: what files with seven digits have."""
+
+SMALLEST_DIRECTION: Final = 1e-9
+"""Directions shorter than this are refused: nobody means them, and they amplify rounding."""
 
 
 class _All:
@@ -28,6 +36,20 @@ class _All:
 
 ALL: Final = _All()
 """Every unlocked joint axis that is not part of a free joint."""
+
+
+def _checked_pose(what: str, pose: Pose) -> Pose:
+    """The pose with read-only arrays, refused when it is not finite or no rotation."""
+    position = checked(pose.position, f"{what}: position", (None,))
+    s = len(position)
+    rotation = checked(pose.rotation, f"{what}: rotation", (s, s))
+    error = float(np.abs(rotation.T @ rotation - np.eye(s)).max(initial=0.0))
+    if error > ROTATION_ERROR or np.linalg.det(rotation) < 0.0:
+        raise ModelError(
+            f"{what}: the matrix {rotation.tolist()} is no rotation: its columns are not a right-handed set "
+            f"of perpendicular unit vectors (off by {error:.3g})"
+        )
+    return Pose(rotation, position)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +66,9 @@ class Body:
     pose: Pose
     drawn: bool = False
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pose", _checked_pose(f"body {self.name!r}", self.pose))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
@@ -58,6 +83,9 @@ class Frame:
     name: str
     body: str
     pose: Pose
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pose", _checked_pose(f"frame {self.name!r}", self.pose))
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +142,17 @@ class Joint:
     closure: bool = False
     cut: Literal["kept", "contact"] | None = None
 
+    def __post_init__(self) -> None:
+        what = f"joint {self.name!r}"
+        first = _checked_pose(f"{what}: frame on the first body", self.frame_on_first)
+        second = _checked_pose(f"{what}: frame on the second body", self.frame_on_second)
+        object.__setattr__(self, "frame_on_first", first)
+        object.__setattr__(self, "frame_on_second", second)
+        axis = checked(self.second_axis, f"{what}: second axis", (3,))
+        if abs(float(np.linalg.norm(axis)) - 1.0) > ROTATION_ERROR:
+            raise ModelError(f"{what}: the second axis {axis.tolist()} is not a unit vector")
+        object.__setattr__(self, "second_axis", axis)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactPart:
@@ -136,6 +175,13 @@ class ContactPart:
     frame_on_first: Pose
     frame_on_second: Pose
     friction: float | None = None
+
+    def __post_init__(self) -> None:
+        what = f"contact {self.name!r}"
+        first = _checked_pose(f"{what}: frame on the first body", self.frame_on_first)
+        second = _checked_pose(f"{what}: frame on the second body", self.frame_on_second)
+        object.__setattr__(self, "frame_on_first", first)
+        object.__setattr__(self, "frame_on_second", second)
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,6 +286,9 @@ class ReferenceMember:
     axes: Literal["ground", "body"] = "ground"
     cuts: Mapping[str, Cut] = field(default_factory=dict)
     label: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "origin", checked(self.origin, "reference point", (None,)))
 
 
 @dataclass(frozen=True, slots=True)

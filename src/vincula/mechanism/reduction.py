@@ -40,6 +40,11 @@ class CutJoint:
     limb_body: str
     limb_sign: int
 
+    @property
+    def other_body(self) -> str:
+        """The body on the other side, which is cut: it carries the cut point."""
+        return self.joint.second if self.limb_sign > 0 else self.joint.first
+
 
 @dataclass(frozen=True, slots=True)
 class Reduction:

@@ -7,10 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vincula.errors import DuplicateNameError, ModelError, NonFiniteError, TopologyError, UnknownNameError
-from vincula.mechanism.parts import GROUND, ContactPart, Joint
+from vincula.arrays import checked
+from vincula.errors import (
+    DuplicateNameError,
+    ModelError,
+    NonFiniteError,
+    ShapeError,
+    TopologyError,
+    UnknownNameError,
+)
+from vincula.mechanism.parts import GROUND, SMALLEST_DIRECTION, ContactPart, Joint
 from vincula.spatial.poses import Pose
 from vincula.spatial.selectors import contact_components
+from vincula.spatial.space import Space
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
@@ -35,11 +44,13 @@ def validate(mechanism: Mechanism) -> None:
     for joint in mechanism.joints:
         _check_joint(mechanism, joint, bodies)
     for contact in mechanism.contacts:
-        contact_components(contact.type, mechanism.space)
-        _check_ends("contact", contact, bodies)
+        _check_contact(mechanism, contact, bodies)
     for frame in mechanism.frames:
         if frame.body not in bodies:
-            raise UnknownNameError("body", frame.body, bodies)
+            raise UnknownNameError(f"body of frame {frame.name!r}", frame.body, sorted(bodies))
+        _check_space(f"frame {frame.name!r}", frame.pose, mechanism.space)
+    for body in mechanism.bodies:
+        _check_space(f"body {body.name!r}: pose", body.pose, mechanism.space)
     mechanism.implicit_joints  # noqa: B018  (raises for islands)
     _unique("joint axis", mechanism.axis_names)
     _check_axes(mechanism)
@@ -56,43 +67,65 @@ def _unique(kind: str, names: Sequence[str]) -> None:
         seen.add(name)
 
 
+def _check_contact(mechanism: Mechanism, contact: ContactPart, bodies: set[str]) -> None:
+    what = f"contact {contact.name!r}"
+    contact_components(contact.type, mechanism.space)
+    _check_ends("contact", contact, bodies)
+    for side, pose in (("first", contact.frame_on_first), ("second", contact.frame_on_second)):
+        _check_space(f"{what}: frame on the {side} body", pose, mechanism.space)
+    if contact.friction is not None and not (np.isfinite(contact.friction) and contact.friction >= 0.0):
+        raise ModelError(f"{what}: the coefficient of friction is {contact.friction}, it must be 0 or more")
+
+
 def _check_ends(kind: str, part: Joint | ContactPart, bodies: set[str]) -> None:
     for end in (part.first, part.second):
         if end not in bodies:
-            raise UnknownNameError(f"body of {kind} {part.name!r}", end, bodies)
+            raise UnknownNameError(f"body of {kind} {part.name!r}", end, sorted(bodies))
     if part.first == part.second:
         raise TopologyError(f"{kind} {part.name!r} connects body {part.first!r} to itself")
 
 
+def _check_space(what: str, pose: Pose, space: Space) -> None:
+    if pose.position.shape != (space.translations,):
+        raise ShapeError(what, pose.position.shape, f"the position of a {space.name} pose")
+
+
 def _check_joint(mechanism: Mechanism, joint: Joint, bodies: set[str]) -> None:
     kind = mechanism.type_of(joint)
+    what = f"joint {joint.name!r}"
     _check_ends("joint", joint, bodies)
-    for pose in (joint.frame_on_first, joint.frame_on_second):
-        if not (np.isfinite(pose.position).all() and np.isfinite(pose.rotation).all()):
-            raise NonFiniteError(f"frame of joint {joint.name!r}")
+    for side, pose in (("first", joint.frame_on_first), ("second", joint.frame_on_second)):
+        _check_space(f"{what}: frame on the {side} body", pose, mechanism.space)
+    if joint.type == "screw" and not (np.isfinite(joint.lead) and joint.lead != 0.0):
+        raise ModelError(f"{what}: a screw needs a lead, its advance a turn in metres, not {joint.lead}")
+    if joint.type == "universal" and np.hypot(*joint.second_axis[:2]) < SMALLEST_DIRECTION:
+        raise ModelError(f"{what}: the two axes of a universal joint are parallel")
     if joint.closure:
         return
-    if len(joint.home) != kind.values:
-        raise ModelError(
-            f"joint {joint.name!r} ({joint.type}) needs {kind.values} home values, got {len(joint.home)}"
-        )
-    if not np.isfinite(joint.home).all():
-        raise NonFiniteError(f"home value of joint {joint.name!r}")
+    home = checked(joint.home, f"{what}: home values", (kind.values,))
+    if not kind.scalar_values and not home[-4:].any():
+        raise ModelError(f"{what}: the home quaternion (w, x, y, z) {home[-4:].tolist()} has length zero")
     for limit in joint.limits:
         if limit.lower is not None and limit.upper is not None and limit.lower > limit.upper:
-            raise ModelError(
-                f"joint {joint.name!r}: lower limit {limit.lower:g} is above upper limit {limit.upper:g}"
-            )
+            raise ModelError(f"{what}: lower limit {limit.lower:g} is above upper limit {limit.upper:g}")
 
 
 def _check_axes(mechanism: Mechanism) -> None:
     axes = set(mechanism.axis_names)
+    scalar = _axes_with_values(mechanism)
     for coupling in mechanism.couplings:
         _known(f"axis in coupling {coupling.name!r}", coupling.axes, axes)
         values = [*coupling.rates.values(), *coupling.driver.values(), *coupling.polynomial]
         _finite(f"coefficient of coupling {coupling.name!r}", values)
         if not any(coupling.rates.values()):
             raise ModelError(f"coupling {coupling.name!r} has no coefficient other than zero")
+        _finite(f"reference of coupling {coupling.name!r}", coupling.references.values())
+        rate_only = [] if not coupling.driver else sorted(set(coupling.axes) - scalar)
+        if rate_only:
+            raise ModelError(
+                f"coupling {coupling.name!r} needs the value of {', '.join(rate_only)}, but balls and loop "
+                "joints have rates alone: only a linear coupling (without driver) can name them"
+            )
     for drive in mechanism.drives:
         _known(f"axis in motor {drive.name!r}", drive.drives, axes)
         _finite(f"coefficient of motor {drive.name!r}", drive.drives.values())
@@ -101,6 +134,10 @@ def _check_axes(mechanism: Mechanism) -> None:
                 f"motor {drive.name!r} drives nothing: give at least one coefficient other than zero"
             )
     drives = {drive.name for drive in mechanism.drives}
+    for name in sorted(drives & axes):
+        raise ModelError(
+            f"motor {name!r} has the name of a joint axis: `--active {name}` could mean either; rename it"
+        )
     _known("active axis or motor", mechanism.active, axes | drives)
     _known("locked axis", mechanism.lock, axes)
     both = [name for name in mechanism.active if name in set(mechanism.lock)]
@@ -112,6 +149,15 @@ def _check_axes(mechanism: Mechanism) -> None:
     targets = axes | drives | set(mechanism.joint)
     for motor, axis in mechanism.motors.items():
         _known(f"axis of motor {motor!r}", [axis], targets)
+
+
+def _axes_with_values(mechanism: Mechanism) -> set[str]:
+    return {
+        axis
+        for joint in mechanism.all_joints
+        if not joint.closure and mechanism.type_of(joint).scalar_values
+        for axis in mechanism.type_of(joint).axis_names(joint.name)
+    }
 
 
 def _known(kind: str, names: Iterable[str], known: set[str]) -> None:
@@ -132,13 +178,16 @@ def _check_reference(mechanism: Mechanism) -> None:
         return
     if reference.body not in mechanism.body:
         raise UnknownNameError("body", reference.body, mechanism.body)
-    if not np.isfinite(reference.origin).all():
-        raise NonFiniteError("reference point")
+    checked(reference.origin, "reference point", (mechanism.space.translations,))
+    if reference.axes not in ("ground", "body"):
+        raise UnknownNameError("choice of axes", str(reference.axes), ("ground", "body"))
     for joint, cut in reference.cuts.items():
         if joint not in mechanism.joint:
             raise UnknownNameError("joint to cut", joint, mechanism.joint)
         if cut.kind not in ("kept", "contact"):
             raise UnknownNameError(f"kind of cut for joint {joint!r}", cut.kind, ("kept", "contact"))
+        if cut.at is not None:
+            checked(cut.at, f"cut of joint {joint!r}: at", (mechanism.space.translations,))
 
 
 def islands(mechanism: Mechanism) -> list[list[str]]:
