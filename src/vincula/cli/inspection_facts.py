@@ -70,6 +70,7 @@ def _joint(subject: Subject, joint: Joint) -> dict[str, Any]:
             "unit": "m" if linear else "rad",
         }
         for name, linear in zip(kind.axis_names(joint.name), kind.linear, strict=True)
+        if not (joint.closure and joint.cut == "contact")  # rows only: its axes are no columns
     ]
     return {
         "name": joint.name,

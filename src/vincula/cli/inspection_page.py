@@ -9,10 +9,12 @@ from typing import Any, Final
 from vincula.cli.page import Column, Page, Table, number, plural, point
 from vincula.errors import listing
 
-MOST_ROWS: Final = 12
+MOST_ROWS: Final = 10
 """Rows for joints and contacts before the rest is only counted; `--all` shows them."""
-MOST_LOOPS: Final = 3
+MOST_LOOPS: Final = 2
 """The same for loops."""
+MOST_CHARACTERS: Final = 160
+"""A loop is told with its bodies as long as that takes no more characters."""
 
 Facts = Mapping[str, Any]
 
@@ -46,8 +48,8 @@ def _summary(facts: Facts) -> list[tuple[str, str]]:
         ("joints", _tally(kinds) or "none"),
         ("contacts", _tally(Counter(contact["type"] for contact in facts["contacts"]))),
         ("couplings", _names(facts["couplings"])),
-        ("motors", f"{len(motors)}: {listing(motors)}" if motors else "none"),
-        ("passive", f"{len(passive)}: {listing(passive)}" if passive else "none"),
+        ("motors", f"{len(motors)}: {listing(motors, 8)}" if motors else "none"),
+        ("passive", f"{len(passive)}: {listing(passive, 8)}" if passive else "none"),
         ("locked", listing(facts["locked"]) if facts["locked"] else ""),
         ("loops", _loop_words(facts)),
         ("mobility", _mobility_words(facts["mobility"])),
@@ -76,7 +78,8 @@ def _loop_words(facts: Facts) -> str:
         return "none: an open chain" if not facts["contacts"] else "none"
     if opened:
         return f"{len(loops)}; {plural(len(opened), 'gap')}: not closed at this configuration (see below)"
-    return f"{len(loops)}, closed to {number(facts['closure']['residual'], 2)} m"
+    residual = facts["closure"]["residual"]
+    return f"{len(loops)}, closed" + (f" to {number(residual, 2)} m" if residual else "")
 
 
 def _mobility_words(mobility: Facts) -> str:
@@ -118,7 +121,7 @@ def _connections(page: Page, facts: Facts, most: int) -> None:
 
 def _values(joint: Facts) -> str:
     if joint["closes_loop"]:
-        return "closes a loop"
+        return ""
     values, axes = joint["values"], joint["axes"]
     if len(values) == len(axes):
         return ", ".join(
@@ -128,9 +131,11 @@ def _values(joint: Facts) -> str:
 
 
 def _roles(joint: Facts) -> str:
+    if not joint["axes"]:
+        return "closes a loop" if joint["closes_loop"] else "rigid"
     states = [axis["state"] for axis in joint["axes"]]
     if len(set(states)) <= 1:
-        return states[0] if states else "rigid"
+        return str(states[0])
     return ", ".join(f"{axis['name']} {axis['state']}" for axis in joint["axes"])
 
 
@@ -157,40 +162,40 @@ def _gap(gap: Facts) -> str:
 
 
 def _walk(loop: Facts) -> str:
+    """The loop with its bodies if that is short, else its joints alone."""
     texts = [loop["bodies"][0]]
     for part, body in zip(loop["parts"], [*loop["bodies"][1:], loop["bodies"][0]], strict=True):
         texts.append(f"-{part}- {body}")
-    return " ".join(texts)
+    with_bodies = " ".join(texts)
+    return with_bodies if len(with_bodies) <= MOST_CHARACTERS else ", ".join(loop["parts"])
 
 
 def _load(page: Page, load: Facts, everything: bool) -> None:
+    """What became of the elements of the file, in one line for what was used and one a reason."""
     if not load["counts"] and not load["notes"]:
         return
     page.heading("Read from the file", f"format {load['format']}")
-    rows = [
-        [kind, *(str(count[key] or "") for key in ("total", "used", "ignored", "repaired"))]
-        for kind, count in load["counts"].items()
-    ]
-    if rows:
-        numbers = [Column(title, justify="right") for title in ("in all", "used", "ignored", "repaired")]
-        page.table(Table([Column("what"), *numbers], rows))
-    for text in _reasons(load, everything):
-        page.sentence(text)
-    for note in load["notes"]:
-        page.sentence(note, "note:")
+    used = [f"{count['used']} {kind}" for kind, count in load["counts"].items() if count["used"]]
+    page.facts(
+        [("used", ", ".join(used)), *_reasons(load, everything), *(("note", n) for n in load["notes"])]
+    )
 
 
-def _reasons(load: Facts, everything: bool) -> list[str]:
-    """Why things were ignored or repaired; equal reasons once."""
-    groups: dict[tuple[str, str, str], list[str]] = {}
+def _reasons(load: Facts, everything: bool) -> list[tuple[str, str]]:
+    """What was ignored or repaired, and why; equal reasons once."""
+    groups: dict[tuple[str, str], dict[str, list[Facts]]] = {}
     for entry in load["entries"]:
         if entry["fate"] != "used":
-            key = (entry["fate"], entry["kind"], entry["detail"])
-            groups.setdefault(key, []).append(entry["name"])
+            kinds = groups.setdefault((entry["fate"], entry["detail"]), {})
+            kinds.setdefault(entry["kind"], []).append(entry)
     texts = []
-    for (fate, kind, detail), names in groups.items():
-        who = listing([name for name in names if name], 10**6 if everything else 6)
-        texts.append(f"{fate} {kind}{f' {who}' if any(names) else ''}: {detail or 'no reason given'}")
+    for (fate, detail), kinds in groups.items():
+        said = []
+        for kind, entries in kinds.items():
+            names = [entry["name"] for entry in entries if entry["name"]]
+            shown = f" ({listing(names, 10**6 if everything else 4)})" if names else ""
+            said.append(f"{sum(entry['count'] for entry in entries)} {kind}{shown}")
+        texts.append((fate, f"{', '.join(said)}: {detail or 'no reason given'}"))
     return texts
 
 
@@ -198,8 +203,6 @@ def _next_step(page: Page, facts: Facts) -> None:
     if facts["reference"] is not None:
         return
     bodies = [body["name"] for body in facts["bodies"]]
-    page.heading("Next")
-    page.sentence(
-        "Name the body whose motion and forces you want, the reference member: "
-        f"vincula analyze {facts['file']} --reference BODY, with BODY one of {listing(bodies)}."
-    )
+    page.heading("Next", "name the body whose motion and forces you want, the reference member")
+    page.sentence(f"vincula analyze {facts['file']} --reference BODY")
+    page.sentence(f"BODY is one of {listing(bodies, 8)}")
