@@ -57,6 +57,7 @@ def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     if not commands:
         return
     from click.testing import CliRunner
+
     from vincula.cli.main import cli
 
     monkeypatch.chdir(tmp_path)
