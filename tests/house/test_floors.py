@@ -84,7 +84,7 @@ def test_slow_and_optional_packages_stay_in_their_rooms(name: str) -> None:
 
 
 def test_no_import_cycles() -> None:
-    """Inside one room a method may import late what is built on its class (`Mechanism.planar` the drawing)."""
+    """Inside one room a method may import late what is built on its own class, as `Mechanism.planar` does."""
     graph = {
         name: {
             found.target
