@@ -20,7 +20,7 @@ from vincula.labels import BodyMotions, Column, Cut, Row, ScaledMatrices, Uncert
 from vincula.spatial.space import PLANAR, SPATIAL, Space
 
 if TYPE_CHECKING:
-    from vincula.numerics.rank import RankLedger
+    from vincula.numerics.ledger import RankLedger
     from vincula.weights import Weights
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +196,7 @@ class LinearModel:
     @cached_property
     def ledger(self) -> RankLedger:
         """The ranks of this model: one ledger, shared by every analysis, evaluated on demand."""
-        from vincula.numerics.rank import RankLedger
+        from vincula.numerics.ledger import RankLedger
 
         return RankLedger.of_model(self)
 

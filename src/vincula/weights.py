@@ -86,6 +86,12 @@ class Weights:
                 raise UnknownNameError("weight", str(key), known)
         return Weights(**mapping)  # type: ignore[arg-type]
 
+    @property
+    def dual(self) -> bool:
+        """Whether torques and wrenches are measured by the reciprocals of the metrics of motion."""
+        given = (self.rate, self.twist, self.torque, self.wrench)
+        return self.reciprocal or all(spec is None for spec in given)
+
     def metric(self, quantity: Quantity, model: LinearModel) -> Metric:
         """The metric of one quantity for a model.
 

@@ -10,7 +10,8 @@ import warnings
 from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
 from vincula.numerics.lapack import svd
-from vincula.numerics.rank import MATRIX_NAMES, MatrixName, RankDecision
+from vincula.numerics.ledger import MATRIX_NAMES, MatrixName
+from vincula.numerics.rank import RankDecision
 from vincula.weights import Quantity, Weights
 
 

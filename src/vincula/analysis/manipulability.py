@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from vincula.analysis.doubt import warn_of_doubt, warn_of_mixed_units
 from vincula.analysis.ellipsoid import Class, Convention, Ellipsoid, Kind, Viewpoint
-from vincula.analysis.relation import Relation, force_relation, internal_relation, kinematic_relation
-from vincula.analysis.spectrum import Spectrum, spectrum
+from vincula.analysis.relation import force_relation, internal_relation, kinematic_relation
+from vincula.analysis.spectrum import Spectrum, dual_spectrum, spectrum
 from vincula.analysis.vectorset import VectorSet
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import ModelError
@@ -112,18 +112,17 @@ def dual_force_ellipsoid(
 class _Recipe:
     """What one ellipsoid is made of, and which classes it lists (house page)."""
 
-    relation: Callable[[LinearModel], Relation]
     task: Quantity
     motor: Quantity
     listed: tuple[Class, ...]
 
 
 _RECIPES: dict[Kind, _Recipe] = {
-    "kinematic": _Recipe(kinematic_relation, "twist", "rate", ("infinite", "finite", "zero", "undefined")),
-    "active force": _Recipe(force_relation, "wrench", "torque", ("finite", "zero")),
-    "passive force": _Recipe(force_relation, "wrench", "torque", ("infinite", "finite")),
-    "internal force": _Recipe(internal_relation, "contact_force", "torque", ("infinite", "finite")),
-    "dual force": _Recipe(force_relation, "wrench", "torque", ("finite",)),
+    "kinematic": _Recipe("twist", "rate", ("infinite", "finite", "zero", "undefined")),
+    "active force": _Recipe("wrench", "torque", ("finite", "zero")),
+    "passive force": _Recipe("wrench", "torque", ("infinite", "finite")),
+    "internal force": _Recipe("contact_force", "torque", ("infinite", "finite")),
+    "dual force": _Recipe("wrench", "torque", ("finite",)),
 }
 
 
@@ -150,9 +149,34 @@ def ellipsoid_of_kind(
         found = printed_spectrum(model, kind, task, motor)
         listed = tuple(c for c in listed if c != "zero")
     else:
-        found = spectrum(recipe.relation(model), task, motor)
+        found = _found(kind, model, weights, task, motor)
     ellipsoid = _assembled(model, kind, listed, found, task, motor)
     return replace(ellipsoid, weights_chosen=weights.explicit, viewpoint=viewpoint, convention=convention)
+
+
+def _found(kind: Kind, model: LinearModel, weights: Weights, task: Metric, motor: Metric) -> Spectrum:
+    """The spectrum of an ellipsoid; forces under reciprocal metrics share that of the motions."""
+    if kind == "internal force":
+        return spectrum(internal_relation(model), task, motor)
+    if kind == "kinematic":
+        return _motion_spectrum(model, weights)
+    if not weights.dual:
+        return spectrum(force_relation(model), task, motor)
+    twist, rate = weights.metric("twist", model), weights.metric("rate", model)
+    return dual_spectrum(_motion_spectrum(model, weights), twist, rate)
+
+
+_LAST_MOTIONS: WeakKeyDictionary[LinearModel, tuple[Weights, Spectrum]] = WeakKeyDictionary()
+
+
+def _motion_spectrum(model: LinearModel, weights: Weights) -> Spectrum:
+    """The kinematic spectrum of a model, kept for the last weights: four ellipsoids share it."""
+    kept = _LAST_MOTIONS.get(model)
+    if kept is not None and kept[0] is weights:
+        return kept[1]
+    found = spectrum(kinematic_relation(model), weights.metric("twist", model), weights.metric("rate", model))
+    _LAST_MOTIONS[model] = weights, found
+    return found
 
 
 def task_quantity(kind: Kind) -> Quantity:
@@ -193,24 +217,29 @@ def _assembled(
     motor: Metric,
 ) -> Ellipsoid:
     """An ellipsoid with the listed classes of a spectrum."""
+    count = {
+        "infinite": found.infinite.shape[1],
+        "finite": len(found.ratios),
+        "zero": found.zero.shape[1],
+        "undefined": found.undefined,
+    }
+    values = {"infinite": [np.inf], "zero": [0.0], "undefined": [np.nan]}
+    sides: dict[str, tuple[Matrix | None, Matrix | None]] = {
+        "infinite": (found.infinite, None),
+        "finite": (found.task, found.motor),
+        "zero": (None, found.zero),
+        "undefined": (None, None),
+    }
     efficiencies: list[float] = []
     classes: list[Class] = []
     task_side: list[Vector | None] = []
     motor_side: list[Vector | None] = []
-    groups: tuple[tuple[Class, int, Matrix | None, Matrix | None], ...] = (
-        ("infinite", found.infinite.shape[1], found.infinite, None),
-        ("finite", len(found.ratios), found.task, found.motor),
-        ("zero", found.zero.shape[1], None, found.zero),
-        ("undefined", found.undefined, None, None),
-    )
-    values = {"infinite": np.inf, "zero": 0.0, "undefined": np.nan}
-    for name, count, task_columns, motor_columns in groups:
-        if name not in listed:
-            continue
-        classes += [name] * count
-        efficiencies += [float(r) ** 2 for r in found.ratios] if name == "finite" else [values[name]] * count
-        task_side += _columns(task_columns, count)
-        motor_side += _columns(motor_columns, count)
+    for name in listed:
+        if count[name]:
+            classes += [name] * count[name]
+            efficiencies += (found.ratios**2).tolist() if name == "finite" else values[name] * count[name]
+            task_side += _columns(sides[name][0], count[name])
+            motor_side += _columns(sides[name][1], count[name])
     components, units = _components(model, kind)
     lines = found.infinite if "infinite" in listed else found.infinite[:, :0]
     axes, doubt = found.task * found.ratios, model.ledger.subspace_doubt
@@ -248,7 +277,7 @@ def _components(model: LinearModel, kind: Kind) -> tuple[tuple[str, ...], tuple[
 def _columns(columns: Matrix | None, count: int) -> list[Vector | None]:
     if columns is None:
         return [None] * count
-    return [frozen(np.ascontiguousarray(columns[:, i])) for i in range(count)]
+    return list(frozen(columns.T.copy()))
 
 
 def _unit(columns: Matrix) -> Matrix:

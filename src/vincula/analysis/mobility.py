@@ -13,7 +13,7 @@ import numpy as np
 
 from vincula.arrays import Matrix, frozen
 from vincula.model import LinearModel
-from vincula.numerics.rank import MatrixName
+from vincula.numerics.ledger import MatrixName
 from vincula.numerics.subspaces import complement, span
 
 

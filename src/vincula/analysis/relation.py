@@ -33,6 +33,7 @@ class Relation:
         doubt: Relative uncertainty of the subspace.
         graded: For given sizes of the weights of the task and of the motor components (scaled), the
             parts of the relation to high relative accuracy; None where there is no such basis.
+        alike: Whether the factors themselves are of one size: 1/100 to 100.
     """
 
     task: Matrix
@@ -44,6 +45,7 @@ class Relation:
     orthonormal: bool
     doubt: float
     graded: Callable[[Vector, Vector], GradedParts] | None = None
+    alike: bool = False
 
     @property
     def size(self) -> int:
@@ -84,6 +86,7 @@ def kinematic_relation(model: LinearModel) -> Relation:
         orthonormal=True,
         doubt=ledger.subspace_doubt,
         graded=lambda task, motor: _graded_motions(model, task, motor),
+        alike=model.length is None or 0.01 <= model.length <= 100.0,
     )
 
 

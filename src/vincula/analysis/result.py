@@ -18,8 +18,8 @@ from vincula.analysis.maps import LinearMap, torque_from_wrench, twist_from_rate
 from vincula.analysis.mobility import MotionBlocks, motion_blocks
 from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
+from vincula.numerics.ledger import RankLedger
 from vincula.numerics.metric import Metric, identity_metric
-from vincula.numerics.rank import RankLedger
 from vincula.weights import Quantity, Weights
 
 

@@ -67,44 +67,88 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
     """
     basis = _sectioned(relation, task, motor)
     parts = _graded(basis, task, motor) or _split(basis, task, motor)
-    weigh_task = task.factor * basis.task_factor
-    weigh_motor = motor.factor * basis.motor_factor
     # Worst case over what is free, best case over what is redundant (eqs. 11-13): finite directions
     # are taken orthogonal, in the metrics, to the infinite and to the zero ones.
-    t, free, task_basis = deflated(weigh_task @ parts.finite_task, weigh_task @ parts.infinite)
-    s, idle, motor_basis = deflated(weigh_motor @ parts.finite_motor, weigh_motor @ parts.zero)
+    t, free, task_basis = deflated(
+        _weighed(task, basis.task_factor, parts.finite_task),
+        _weighed(task, basis.task_factor, parts.infinite),
+    )
+    s, idle, motor_basis = deflated(
+        _weighed(motor, basis.motor_factor, parts.finite_motor),
+        _weighed(motor, basis.motor_factor, parts.zero),
+    )
     angles = angles_of_graded_pair(t, s) if parts.graded else angles_of_pair(t, s)
-    task_rest = task_basis @ svd(angles.task)[0][:, t.shape[1] :]
-    motor_rest = motor_basis @ svd(angles.motor)[0][:, s.shape[1] :]
-    task_side = task.inverse @ (task_basis @ angles.task)
-    motor_side = motor.inverse @ (motor_basis @ angles.motor)
+    task_side = _physical(task, task_basis @ angles.task)
+    motor_side = _physical(motor, motor_basis @ angles.motor)
     signs = _signs(task_side)
     return Spectrum(
         ratios=angles.ratios,
         task=task_side * signs + 0.0,
         motor=motor_side * signs + 0.0,
-        infinite=_oriented(task.inverse @ free),
-        zero=_oriented(motor.inverse @ idle),
-        unreached=_oriented(task.inverse @ task_rest),
-        unused=_oriented(motor.inverse @ motor_rest),
+        infinite=_oriented(_physical(task, free)),
+        zero=_oriented(_physical(motor, idle)),
+        unreached=_oriented(_physical(task, _rest(task_basis, angles.task))),
+        unused=_oriented(_physical(motor, _rest(motor_basis, angles.motor))),
         undefined=parts.undefined,
     )
+
+
+def dual_spectrum(motions: Spectrum, twist: Metric, rate: Metric) -> Spectrum:
+    """The spectrum of equilibria under the reciprocal metrics, from that of motions.
+
+    The same angles with sines and cosines swapped: what is never reached carries every wrench, what
+    never moves holds every torque.  tau.q_a + w.u = 0 makes the torques negative.
+
+    Args:
+        motions: Spectrum of the kinematic relation.
+        twist: W_u; wrenches are measured by its reciprocal.
+        rate: W_q; torques are measured by its reciprocal.
+    """
+    wrenches = twist.matrix @ motions.task[:, ::-1]
+    torques = rate.matrix @ motions.motor[:, ::-1]
+    signs = _signs(wrenches)
+    return Spectrum(
+        ratios=1.0 / motions.ratios[::-1],
+        task=wrenches * signs + 0.0,
+        motor=-torques * signs + 0.0,
+        infinite=_oriented(twist.matrix @ motions.unreached),
+        zero=_oriented(rate.matrix @ motions.unused),
+        unreached=_oriented(twist.matrix @ motions.infinite),
+        unused=_oriented(rate.matrix @ motions.zero),
+        undefined=0,
+    )
+
+
+def _weighed(metric: Metric, factor: Vector, block: Matrix) -> Matrix:
+    """Scaled coordinates to physical ones, and those to lengths in the metric."""
+    physical = factor[:, None] * block
+    return physical if metric.unit else metric.factor @ physical
+
+
+def _physical(metric: Metric, block: Matrix) -> Matrix:
+    return block if metric.unit else metric.inverse @ block
+
+
+def _rest(basis: Matrix, used: Matrix) -> Matrix:
+    """The part of an orthonormal basis that orthonormal coordinates `used` leave over."""
+    size, count = used.shape
+    return basis[:, :0] if size == count else basis @ svd(used)[0][:, count:]
 
 
 GRADED = 100.0
 """Weights whose roots differ by more than this call for a basis that is accurate entry by entry."""
 
+LONG = 1e4
+"""Weights whose roots differ by more than this call for long arithmetic as well."""
+
 
 def _graded(relation: Relation, task: Metric, motor: Metric) -> _Parts | None:
-    """The parts for diagonal weights of very different size; None where weights are of one size.
-
-    One graded side needs the accurate basis only; two need long arithmetic as well.
-    """
-    if task.unit and motor.unit and _grading(relation.task_factor, relation.motor_factor) <= GRADED:
+    """The parts for diagonal weights of very different size; None where weights are of one size."""
+    if relation.graded is None or (task.unit and motor.unit and relation.alike):
         return None
     weights = task.diagonal, motor.diagonal
     regular = relation.infinite >= 0 and relation.size >= relation.infinite + relation.zero
-    if relation.graded is None or not regular or not (task.definite and motor.definite):
+    if not regular or not (task.definite and motor.definite):
         return None
     if weights[0] is None or weights[1] is None:
         return None
@@ -112,12 +156,12 @@ def _graded(relation: Relation, task: Metric, motor: Metric) -> _Parts | None:
     if max(_grading(sizes[0]), _grading(sizes[1])) <= GRADED:
         return None
     found = relation.graded(*sizes)
-    both = min(_grading(sizes[0]), _grading(sizes[1])) > GRADED
-    return _Parts(found.infinite, found.finite_task, found.finite_motor, found.zero, 0, graded=both)
+    long = max(_grading(sizes[0]), _grading(sizes[1])) > LONG
+    return _Parts(found.infinite, found.finite_task, found.finite_motor, found.zero, 0, graded=long)
 
 
-def _grading(*sizes: Vector) -> float:
-    return max((float(x.max() / x.min()) for x in sizes if len(x)), default=1.0)
+def _grading(sizes: Vector) -> float:
+    return float(sizes.max() / sizes.min()) if len(sizes) else 1.0
 
 
 def _sectioned(relation: Relation, task: Metric, motor: Metric) -> Relation:
@@ -222,12 +266,12 @@ def _separated(block: Matrix, basis: Matrix, count: int) -> tuple[Matrix, Matrix
 
 def _signs(columns: Matrix) -> Vector:
     """Signs that make the largest component of every column positive (the first among equals)."""
-    if columns.shape[1] == 0:
-        return np.empty(0)
+    if not columns.size:
+        return np.ones(columns.shape[1])
     size = np.abs(columns)
-    first = np.argmax(size >= size.max(axis=0) * (1.0 - 1e-9), axis=0)
+    first = (size >= size.max(axis=0) * (1.0 - 1e-9)).argmax(axis=0)
     return np.where(columns[first, np.arange(columns.shape[1])] < 0.0, -1.0, 1.0)
 
 
 def _oriented(columns: Matrix) -> Matrix:
-    return columns * _signs(columns) + 0.0 if columns.shape[0] else columns
+    return columns * _signs(columns) + 0.0 if columns.size else columns

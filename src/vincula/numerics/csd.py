@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
-from vincula.numerics.lapack import eliminated, jacobi_svd, qr_rows_pivoted
+from vincula.numerics.lapack import eliminated, identity, jacobi_svd, qr_rows_pivoted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,22 +57,20 @@ def angles_of_pair(task: Matrix, motor: Matrix) -> Angles:
         return Angles(np.empty(0), np.empty(0), np.empty((p, 0)), np.empty((motor.shape[0], 0)))
     stack = qr_rows_pivoted(np.vstack([task, motor]), k)
     upper, lower = stack[:p], stack[p:]
-    _, cosines, _ = jacobi_svd(upper)
-    motor_left, sines_descending, right = jacobi_svd(lower)
-    sines = sines_descending[::-1]
+    task_left, cosines, task_right = jacobi_svd(upper)
+    motor_left, sines, motor_right = jacobi_svd(lower)
+    sines = sines[::-1]
     leading = int(np.count_nonzero(sines <= cosines))
+    if leading == 0:
+        return Angles(cosines, sines, task_left, _normalised(lower @ task_right))
     # Right vectors for the smallest sines come last; take them in the order of the ratios.
-    first, rest = right[:, ::-1][:, :leading], right[:, : k - leading]
-    motor_first = motor_left[:, ::-1][:, :leading]
-    task_first = _normalised(upper @ first)
-    task_rest, _, turn = jacobi_svd(upper @ rest)
-    motor_rest = _normalised(lower @ rest @ turn)
-    return Angles(
-        cosines,
-        sines,
-        np.hstack([task_first, task_rest]),
-        np.hstack([motor_first, motor_rest]),
-    )
+    first, rest = motor_right[:, ::-1][:, :leading], motor_right[:, : k - leading]
+    task_side, motor_side = _normalised(upper @ first), motor_left[:, ::-1][:, :leading]
+    if leading < k:
+        task_rest, _, turn = jacobi_svd(upper @ rest)
+        task_side = np.hstack([task_side, task_rest])
+        motor_side = np.hstack([motor_side, _normalised(lower @ rest @ turn)])
+    return Angles(cosines, sines, task_side, motor_side)
 
 
 def deflated(block: Matrix, fixed: Matrix) -> tuple[Matrix, Matrix, Matrix]:
@@ -91,10 +89,10 @@ def deflated(block: Matrix, fixed: Matrix) -> tuple[Matrix, Matrix, Matrix]:
     """
     p, j = fixed.shape
     if j == 0:
-        return block, np.empty((p, 0)), np.eye(p)
+        return block, fixed, identity(p)
     turned, factor = eliminated(fixed, block)
     return turned[j:], factor[:, :j], factor[:, j:]
 
 
 def _normalised(columns: Matrix) -> Matrix:
-    return np.asarray(columns / np.linalg.norm(columns, axis=0))
+    return np.asarray(columns / np.sqrt(np.einsum("ij,ij->j", columns, columns)))

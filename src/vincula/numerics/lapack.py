@@ -6,14 +6,22 @@ arithmetic.  Empty matrices, which LAPACK refuses, are legal here.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgejsv, dgeqp3, dgeqrf, dgesvd, dorgqr, dormqr
+from scipy.linalg.lapack import dgejsv, dgeqp3, dgeqrf, dgesvd, dorgqr, dormqr, dtrtri
 
-from vincula.arrays import Matrix, Vector
+from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import VinculaError
 
 _ROW_SCALED_JACOBI = {"joba": 2, "jobu": 0, "jobv": 0, "jobt": 1, "jobp": 0}
+
+
+@lru_cache(maxsize=256)
+def identity(size: int) -> Matrix:
+    """The identity, read-only, made once a size."""
+    return frozen(np.eye(size))
 
 
 def singular_values(matrix: Matrix) -> Vector:
@@ -57,6 +65,23 @@ def qr_full(matrix: Matrix) -> Matrix:
     packed, tau, _, info = dgeqrf(matrix)
     _refuse_failure("geqrf", info)
     return _explicit(packed, tau, m)
+
+
+def qr_applied(matrix: Matrix, block: Matrix) -> tuple[Matrix, Matrix]:
+    """R (n x n, upper) and Q^T block (m x k) of the QR factorisation of an m x n matrix, m >= n > 0."""
+    packed, tau, _, info = dgeqrf(matrix)
+    _refuse_failure("geqrf", info)
+    turned = block
+    if 0 not in block.shape:
+        turned, _, info = dormqr("L", "T", packed, tau, block, 64 * block.shape[1])
+        _refuse_failure("ormqr", info)
+    return np.triu(packed[: matrix.shape[1]]), turned
+
+
+def inverse_of_triangle(triangle: Matrix) -> Matrix | None:
+    """Inverse of an upper triangle; None if its diagonal has an exact zero."""
+    inverse, info = dtrtri(triangle)
+    return None if info > 0 else np.asarray(inverse)
 
 
 def qr_rows_pivoted(matrix: Matrix, columns: int) -> Matrix:

@@ -13,7 +13,7 @@ import numpy as np
 
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import WeightError
-from vincula.numerics.lapack import svd
+from vincula.numerics.lapack import identity, svd
 from vincula.numerics.rank import decide_rank, negligible
 
 
@@ -81,7 +81,7 @@ class Metric:
 @lru_cache(maxsize=64)
 def identity_metric(size: int) -> Metric:
     """The identity on `size` components."""
-    eye = frozen(np.eye(size))
+    eye = identity(size)
     return Metric(eye, eye, eye, frozen(np.empty((size, 0))), unit=True)
 
 

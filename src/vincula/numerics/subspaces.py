@@ -16,7 +16,7 @@ from vincula.arrays import Matrix
 from vincula.numerics.lapack import qr_full, svd
 
 if TYPE_CHECKING:
-    from vincula.numerics.rank import MatrixName, RankLedger
+    from vincula.numerics.ledger import MatrixName, RankLedger
 
 
 def kernel(matrix: Matrix, rank: int) -> Matrix:
@@ -98,9 +98,12 @@ class Subspaces:
 
         Both come from one orthogonal matrix, so that tau.q_a + w.u = 0 to rounding.
         """
-        ledger = self.ledger
-        z = self.left_kernel("passive")
-        reduced = z.T @ np.hstack([ledger.matrix("active"), ledger.matrix("member")])
+        ledger, elimination = self.ledger, self.ledger.elimination
+        if elimination is not None and ledger.rank("passive") == len(elimination.coupling):
+            reduced = elimination.reduced
+        else:
+            z = self.left_kernel("passive")
+            reduced = z.T @ np.hstack([ledger.matrix("active"), ledger.matrix("member")])
         rank = ledger.rank("all") - ledger.rank("passive")
         right = svd(reduced)[2]
         return right[:, rank:], right[:, :rank]
