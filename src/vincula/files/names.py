@@ -1,8 +1,11 @@
-"""Which texts may be names: printable, without the characters that deceive a reader or a page."""
+"""Which texts may be names, and which names look like a slip of the pen for another."""
 
 from __future__ import annotations
 
+import difflib
+import re
 import unicodedata
+from collections.abc import Iterable
 
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 
@@ -28,3 +31,11 @@ def name_problem(name: str, limits: Limits = DEFAULT_LIMITS) -> str:
     if "<" in name or ">" in name:
         return "a name without '<' and '>'"
     return ""
+
+
+def similar_name(name: str, others: Iterable[str]) -> str:
+    """Another name that differs by a slip of the pen and not by its numbers; empty if there is none."""
+    digits = re.sub(r"[^0-9]", "", name)
+    alike = [other for other in others if re.sub(r"[^0-9]", "", other) == digits and len(other) > 3]
+    near = difflib.get_close_matches(name, alike, n=1, cutoff=0.8)
+    return near[0] if near else ""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from vincula.errors import listing
+from vincula.files.units import SI, Units
 
 Fate = Literal["used", "ignored", "repaired"]
 
@@ -39,12 +40,14 @@ class LoadReport:
         format: The format that was recognised.
         entries: One entry an element, in the order of reading.
         notes: Facts about the whole that the user should know.
+        units: Units of the numbers in the file, and so of configurations for it.
     """
 
     file: str
     format: str
     entries: list[Entry] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    units: Units = SI
 
     def used(self, kind: str, name: str = "", detail: str = "", count: int = 1) -> None:
         """Record an element that is part of the mechanism now."""
@@ -90,6 +93,7 @@ class LoadReport:
         return {
             "file": self.file,
             "format": self.format,
+            "units": {"length": self.units.length, "angle": self.units.angle},
             "counts": self.counts(),
             "entries": [
                 {"fate": e.fate, "kind": e.kind, "name": e.name, "detail": e.detail, "count": e.count}

@@ -22,15 +22,20 @@ class TypedNumber(float):
 
     Attributes:
         half_unit: Half a unit of the last digit, 0 for numbers taken as exact.
+        text: The number as it was typed.
     """
 
     half_unit: float
+    text: str
 
     def __new__(cls, text: str) -> TypedNumber:
         """The number that `text` spells."""
         number = super().__new__(cls, text)
-        number.half_unit = half_unit(text)
+        number.half_unit, number.text = half_unit(text), text
         return number
+
+    def __repr__(self) -> str:
+        return self.text
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,177 @@
+"""`vincula.load`: any file that can be read, recognised by what is in it."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from vincula.errors import FileError, UnknownNameError, listing
+from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.problems import shown
+from vincula.files.source import Source, open_source
+
+if TYPE_CHECKING:
+    from vincula.files.native import Loaded
+    from vincula.files.parameters import Settings
+    from vincula.files.report import LoadReport
+    from vincula.mechanism.mechanism import Mechanism
+
+EXAMPLE: Final = "example:"
+"""What stands before the name of an example of the catalog."""
+
+_PROLOGUE: Final = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^<>]*>)", re.DOTALL)
+_ROOT: Final = re.compile(r"\s*<([A-Za-z_][\w.:-]*)([^<>]*)")
+
+
+def load(
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float | str] | None = None,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+) -> Mechanism:
+    """The mechanism of a file or an example.
+
+    Args:
+        path: A vincula native file (YAML or JSON), an MJCF file, or `example:NAME`.
+        parameters: New values for declared parameters: numbers in the units of the file (examples: m
+            and rad), or texts with a unit such as `"1deg"`.
+        limits: How much a file may hold.
+
+    Raises:
+        FileError: The file cannot be read; every independent problem with file, line and column.
+        UnknownNameError: No such example or parameter.
+        ModelError: A parameter that is no number.
+        MissingExtraError: MJCF without MuJoCo.
+    """
+    return load_with_report(path, parameters, limits=limits)[0]
+
+
+def load_with_report(
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float | str] | None = None,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+) -> tuple[Mechanism, LoadReport]:
+    """As `load`, with the report of everything used, ignored and repaired."""
+    file, settings = os.fspath(path), dict(parameters or {})
+    if file.startswith(EXAMPLE):
+        return _example(file, settings)
+    loaded = _Loader(settings, limits).load(file)
+    for name in settings:
+        if name not in loaded.parameters:
+            raise UnknownNameError("parameter", name, loaded.parameters)
+    return loaded.mechanism, loaded.report
+
+
+def _example(file: str, settings: Mapping[str, float | str]) -> tuple[Mechanism, LoadReport]:
+    from vincula.files.report import LoadReport
+    from vincula.mechanism.catalog.registry import example
+
+    mechanism = example(file[len(EXAMPLE) :].strip(), **settings)
+    report = LoadReport(file, "example")
+    for joint in mechanism.joints:
+        report.used("joint", joint.name, joint.type)
+    for contact in mechanism.contacts:
+        report.used("contact", contact.name, contact.type)
+    for coupling in mechanism.couplings:
+        report.used("coupling", coupling.name)
+    for motor in mechanism.active:
+        report.used("motor", motor)
+    return mechanism, report
+
+
+class _Loader:
+    """Loads a file and the files below it."""
+
+    def __init__(self, settings: Settings, limits: Limits) -> None:
+        self._settings, self._limits = settings, limits
+        self._above: list[Path] = []
+
+    def load(self, file: str) -> Loaded:
+        """What the file gives."""
+        source = open_source(file, self._limits)
+        resolved = Path(file).resolve()
+        if resolved in self._above:
+            raise FileError(f"{source.file}: the file is its own base")
+        if len(self._above) >= self._limits.includes:
+            raise FileError(f"{source.file}: more than {self._limits.includes} files below each other")
+        self._above.append(resolved)
+        try:
+            return self._read(source)
+        finally:
+            self._above.pop()
+
+    def _read(self, source: Source) -> Loaded:
+        if source.text.lstrip().startswith("<"):
+            return self._xml(source)
+        from vincula.files.native import read_native
+        from vincula.files.treefile import read_tree
+
+        folder = Path(source.file).parent
+        return read_native(
+            read_tree(source, self._limits),
+            Path(source.file).stem,
+            lambda base: self._base(base, folder),
+            self._settings,
+            self._limits,
+        )
+
+    def _base(self, base: str, folder: Path) -> Loaded:
+        from vincula.files.native import Loaded
+
+        if base.startswith(EXAMPLE):
+            from vincula.mechanism.catalog.registry import entry
+
+            names = [parameter.name for parameter in entry(base[len(EXAMPLE) :].strip()).parameters]
+            own = {name: value for name, value in self._settings.items() if name in names}
+            return Loaded(*_example(base, own), tuple(names))
+        if "://" in base:
+            raise FileError(f"{shown(base)}: expected a file on this machine; network addresses are not read")
+        return self.load(str(folder / base))
+
+    def _xml(self, source: Source) -> Loaded:
+        from vincula.files.native import Loaded
+
+        root = xml_root(source)
+        if root in ("mujoco", "mujocoinclude"):
+            from vincula.files.mjcf import load_mjcf
+
+            return Loaded(*load_mjcf(source, self._limits))
+        raise FileError(f"{source.file}: {_other_xml(root)}; read are {listing(FORMATS)}")
+
+
+FORMATS: Final = ("vincula native (YAML or JSON)", "MJCF")
+"""The formats that can be read."""
+
+_OTHER_XML: Final = {
+    "robot": "got a URDF file",
+    "sdf": "got an SDF file",
+    "COLLADA": "got a mesh (COLLADA)",
+    "html": "got a web page",
+    "svg": "got a picture (SVG)",
+}
+
+
+def xml_root(source: Source) -> str:
+    """Tag of the first element of an XML file; empty when there is none.
+
+    Raises:
+        FileError: The file is a xacro that has not been expanded.
+    """
+    at = 0
+    while (match := _PROLOGUE.match(source.text, at)) is not None:
+        at = match.end()
+    root = _ROOT.match(source.text, at)
+    if root is None:
+        # Whatever this is, the XML reader says best what is wrong with it.
+        return "mujoco" if "<mujoco" in source.text else ""
+    if "xacro" in root[2] or root[1].startswith("xacro:"):
+        raise FileError(f"{source.file}: got an unexpanded xacro; expand it first: xacro FILE > robot.urdf")
+    return root[1]
+
+
+def _other_xml(root: str) -> str:
+    return _OTHER_XML.get(root, f"got XML with the root {shown(root)}" if root else "got something like XML")

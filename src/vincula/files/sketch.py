@@ -1,0 +1,60 @@
+"""A native file in the making: what is drawn so far, and where what is wrong with it is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+from vincula.errors import ModelError
+from vincula.files.problems import shown
+from vincula.files.tree import Document, Location
+from vincula.files.units import Scale
+from vincula.mechanism.drawing import Drawing
+
+if TYPE_CHECKING:
+    from vincula.files.schema import NativeFile
+    from vincula.mechanism.mechanism import Mechanism
+
+Result = TypeVar("Result")
+
+
+@dataclass
+class Sketch:
+    """What is drawn from one file.
+
+    Attributes:
+        document: The file.
+        entry: Its validated content.
+        drawing: Everything drawn so far, the base included.
+        scale: Units of the file.
+        base: The base, at the configuration of the overlay.
+        first_use: Where every new name is first written, for messages about the whole.
+    """
+
+    document: Document
+    entry: NativeFile
+    drawing: Drawing
+    scale: Scale
+    base: Mechanism | None
+    first_use: dict[str, Location] = field(default_factory=dict)
+
+    def problem(self, location: Location, message: str) -> None:
+        """Add a problem at a place of the file."""
+        self.document.problems.add(self.document.place(location), message)
+
+    def unknown(self, location: Location, kind: str, name: str, choices: Iterable[str]) -> None:
+        """Add that a name at a place is not one of those that exist."""
+        known = list(choices) or [f"(there is no {kind})"]
+        place = self.document.place(location)
+        self.document.problems.add(
+            place, got=shown(name), expected=f"a {kind} that exists", name=name, choices=known
+        )
+
+    def attempt(self, location: Location, action: Callable[[], Result]) -> Result | None:
+        """What the action returns, None when it refuses; the refusal is told at the place."""
+        try:
+            return action()
+        except ModelError as error:
+            self.problem(location, str(error))
+            return None

@@ -1,0 +1,87 @@
+"""The units that the numbers of a file are in, and the way from there to metres and radians."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from vincula.files.expressions import Measured
+from vincula.mechanism.parts import Precision
+from vincula.spatial.units import UNITS
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """Units of length and angle of a file.
+
+    Attributes:
+        length: m, mm, cm or in.
+        angle: rad or deg.
+    """
+
+    length: Literal["m", "mm", "cm", "in"] = "m"
+    angle: Literal["rad", "deg"] = "rad"
+
+    def metres(self, value: float) -> float:
+        """A length of the file in metres."""
+        size = UNITS["length"][self.length]
+        per_metre = round(1.0 / size)
+        # 333.3 mm / 1000 is the double next to 0.3333; 333.3 * 1e-3 is not always.
+        return value / per_metre if size == 1.0 / per_metre else value * size
+
+    def radians(self, value: float) -> float:
+        """An angle of the file in radians."""
+        return math.radians(value) if self.angle == "deg" else value
+
+    def size(self, linear: bool) -> float:
+        """One unit of length in metres, or one unit of angle in radians."""
+        return UNITS["length"][self.length] if linear else UNITS["angle"][self.angle]
+
+    def inside(self, value: float, linear: bool) -> float:
+        """A value of an axis in metres or radians."""
+        return self.metres(value) if linear else self.radians(value)
+
+    @property
+    def is_si(self) -> bool:
+        """Whether nothing needs converting."""
+        return self.length == "m" and self.angle == "rad"
+
+
+SI = Units()
+"""Metres and radians."""
+
+
+class Scale:
+    """Converts the numbers of one file and remembers how roughly they were typed."""
+
+    def __init__(self, units: Units) -> None:
+        self.units = units
+        self._length = self._angle = 0.0
+
+    def length(self, number: Measured) -> float:
+        """A length in metres."""
+        self._length = max(self._length, self.units.metres(number.half_unit))
+        return self.units.metres(number.value)
+
+    def point(self, numbers: Sequence[Measured]) -> tuple[float, ...]:
+        """A position in metres."""
+        return tuple(self.length(number) for number in numbers)
+
+    def direction(self, numbers: Sequence[Measured]) -> tuple[float, ...]:
+        """A direction as it is; its digits count as an angle."""
+        values = tuple(number.value for number in numbers)
+        size = math.hypot(*values)
+        if size > 0.0:
+            self._angle = max(self._angle, max(number.half_unit for number in numbers) / size)
+        return values
+
+    def precision(self, base: Precision) -> Precision:
+        """What is known about the digits of this file and of the one it builds upon."""
+        return Precision(
+            digits_length=max(self._length, base.digits_length),
+            digits_angle=max(self._angle, base.digits_angle),
+            tolerance_length=base.tolerance_length,
+            tolerance_angle=base.tolerance_angle,
+        )
