@@ -97,9 +97,9 @@ def classified(
     part = float(np.linalg.norm(full[where.columns_of[MEMBER]])) if MEMBER in where.columns_of else 0.0
     driven = float(np.linalg.norm([full[where.column[name]] for name in motors]))
     kind: SingularityKind = "internal"
-    if watch.name in ("motors locked", "held") and not negligible(part, 1.0, SHARE):
+    if watch.name == "motors locked" and not negligible(part, 1.0, SHARE):
         kind = "platform free"
-    elif watch.name == "member locked" and not negligible(driven, 1.0, SHARE):
+    elif watch.name in ("member locked", "held") and not negligible(driven, 1.0, SHARE):
         kind = "motors without authority"
     shares.pop(MEMBER, None)
     reference = problem.mechanism.reference

@@ -30,7 +30,7 @@ class Watch:
     """One block of columns.
 
     Attributes:
-        name: `loops`, `motors locked`, `member locked` or `held`.
+        name: `loops`, `motors locked`, `member locked`, or `held` (the reference point alone locked).
         columns: The columns of the block.
     """
 
