@@ -74,10 +74,11 @@ def read_bytes(path: str | os.PathLike[str], most: int) -> bytes:
         descriptor = os.open(path, flags)
     except (OSError, ValueError) as error:
         raise FileError(f"{file}: {_why_not_opened(error)}") from None
+    status = os.fstat(descriptor)
+    if not stat.S_ISREG(status.st_mode):
+        os.close(descriptor)
+        raise FileError(f"{file}: expected a file, got {_kind_of(status.st_mode)}")
     with os.fdopen(descriptor, "rb", closefd=True) as stream:
-        status = os.fstat(descriptor)
-        if not stat.S_ISREG(status.st_mode):
-            raise FileError(f"{file}: expected a file, got {_kind_of(status.st_mode)}")
         if status.st_size > most:
             raise FileError(_too_large(file, status.st_size, most, "file"))
         data = stream.read(most + 1)
