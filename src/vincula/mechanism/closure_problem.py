@@ -193,48 +193,56 @@ class ClosureProblem:
         first, second = part_frames(joint, poses)
         return values_between(self.mechanism.type_of(joint), first, second, joint.second_axis)
 
-    def poses(self, state: Vector) -> tuple[dict[str, Pose], dict[str, Pose]]:
-        """Poses of all bodies, and the motion of every joint that is an unknown."""
+    def poses(self, state: Vector) -> tuple[dict[str, Pose], dict[str, tuple[Pose, Pose]]]:
+        """Poses of all bodies, and for every joint that is an unknown frame A and where its values put B."""
         moved = {
             joint.name: motion(kind, state[values], joint.lead, joint.second_axis)
             for joint, kind, values in self.variables.joints
         }
         poses = {GROUND: Pose.identity(self.mechanism.space.translations)}
-        for joint, forward, before, after in self._steps:
-            step = moved[joint.name]
+        frames: dict[str, tuple[Pose, Pose]] = {}
+        for joint, forward, beyond in self._steps:
             if forward:
-                poses[joint.second] = poses[joint.first] @ before @ step @ after
+                first = poses[joint.first] @ joint.frame_on_first
+                second = first @ moved.pop(joint.name)
+                poses[joint.second] = second @ beyond
             else:
-                poses[joint.first] = poses[joint.second] @ after @ step.inverse() @ before
-        return poses, moved
+                second = poses[joint.second] @ joint.frame_on_second
+                first = second @ moved.pop(joint.name).inverse()
+                poses[joint.first] = first @ beyond
+            frames[joint.name] = first, second
+        for name, motion_of_own in moved.items():
+            joint = self.variables.joint[name]
+            first = poses[joint.first] @ joint.frame_on_first
+            frames[name] = first, first @ motion_of_own
+        return poses, frames
 
     @cached_property
-    def _steps(self) -> list[tuple[Joint, bool, Pose, Pose]]:
-        """Tree joints with the constant poses before and after their motion."""
-        steps = []
-        for joint, forward in self.mechanism.tree:
-            one, two = joint.frame_on_first, joint.frame_on_second
-            steps.append((joint, forward, *((one, two.inverse()) if forward else (one.inverse(), two))))
-        return steps
+    def _steps(self) -> list[tuple[Joint, bool, Pose]]:
+        """Tree joints with the constant pose of the next body in the far frame of the joint."""
+        return [
+            (joint, forward, (joint.frame_on_second if forward else joint.frame_on_first).inverse())
+            for joint, forward in self.mechanism.tree
+        ]
 
     def gaps(self, state: Vector) -> Vector:
         """Residuals alone, scaled."""
-        poses, moved = self.poses(state)
+        poses, frames = self.poses(state)
         gaps = np.zeros(self.rows)
         for block in self._blocks:
-            gaps[block.rows] = gap_rows(block.selection, *self._ends(block, poses, moved))[0]
+            gaps[block.rows] = gap_rows(block.selection, *self._ends(block, poses, frames))[0]
         self._scalar_gaps(state, gaps)
         return gaps * self.row_scale
 
     def equations(self, state: Vector) -> Equations:
         """Residuals and their Jacobian, scaled."""
-        poses, moved = self.poses(state)
-        twists = self._twists(poses, moved)
+        poses, frames = self.poses(state)
+        twists = self._twists(frames)
         gaps = np.zeros(self.rows)
         jacobian = np.zeros((self.rows, self.columns))
         s = self.mechanism.space.translations
         for block in self._blocks:
-            first, second = self._ends(block, poses, moved)
+            first, second = self._ends(block, poses, frames)
             gaps[block.rows], rows = gap_rows(block.selection, first, second)
             rows[:, s:] += rows[:, :s] @ moment_arm(second.position - self.centre)
             jacobian[block.rows, block.columns] = (rows @ twists[:, block.columns]) * block.signs
@@ -246,25 +254,21 @@ class ClosureProblem:
         return Equations(gaps * self.row_scale, scaled)
 
     def _ends(
-        self, block: _Block, poses: Mapping[str, Pose], moved: Mapping[str, Pose]
+        self, block: _Block, poses: Mapping[str, Pose], frames: Mapping[str, tuple[Pose, Pose]]
     ) -> tuple[Pose, Pose]:
-        first = poses[block.part.first] @ block.part.frame_on_first
+        second = poses[block.part.second] @ block.part.frame_on_second
         if block.own is not None:
-            first = first @ moved[block.name]
-        return first, poses[block.part.second] @ block.part.frame_on_second
+            return frames[block.name][1], second
+        return poses[block.part.first] @ block.part.frame_on_first, second
 
-    def _twists(self, poses: Mapping[str, Pose], moved: Mapping[str, Pose]) -> Matrix:
+    def _twists(self, frames: Mapping[str, tuple[Pose, Pose]]) -> Matrix:
         """d x columns: twist at the centre, in ground axes, of every unknown axis."""
         twists = np.zeros((self.mechanism.space.dimension, self.columns))
         for joint, kind, _ in self.variables.joints:
-            if not kind.axes:
-                continue
-            first = poses[joint.first] @ joint.frame_on_first
-            second = first @ moved[joint.name]
-            columns = self.variables.columns_of[joint.name]
-            twists[:, columns] = axis_twists(
-                kind, first, second, joint.lead, joint.second_axis, self.centre
-            )
+            if kind.axes:
+                twists[:, self.variables.columns_of[joint.name]] = axis_twists(
+                    kind, *frames[joint.name], joint.lead, joint.second_axis, self.centre
+                )
         return twists
 
     def _scalar_gaps(self, state: Vector, gaps: Vector) -> None:

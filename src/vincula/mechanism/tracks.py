@@ -8,6 +8,7 @@ held values must turn back, is an ordinary point of the curve and can be located
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from vincula.arrays import Matrix, Vector
 from vincula.mechanism.closure_problem import ClosureProblem, Equations
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.watching import measured
+
+POLISHED: Final = 5e-15
+"""Scaled closure residual that needs no further correction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +122,7 @@ class Track:
                 break
             sizes.append(size)
             point, best = trial, trial.residual
-            if not size < 1e3 or best < 2e-16:
+            if not size < 1e3 or best < POLISHED:
                 break
         return point, sizes
 

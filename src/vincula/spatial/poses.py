@@ -6,6 +6,7 @@ always in the name (`wxyz`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -90,6 +91,13 @@ def rotation_vector(rotation: Matrix) -> Vector:
     """Rotation vector (axis times angle) of a rotation: 1 component in the plane, 3 in space [rad]."""
     if rotation.shape[0] == 2:
         return np.array([np.arctan2(rotation[1, 0], rotation[0, 0])])
+    cosine = 0.5 * (float(rotation[0, 0] + rotation[1, 1] + rotation[2, 2]) - 1.0)
+    if cosine > -0.9:  # the skew part is accurate short of half a turn, and this is called often
+        twice = rotation - rotation.T
+        x, y, z = 0.5 * float(twice[2, 1]), 0.5 * float(twice[0, 2]), 0.5 * float(twice[1, 0])
+        sine = math.sqrt(x * x + y * y + z * z)
+        factor = math.atan2(sine, cosine) / sine if sine > 0.0 else 1.0
+        return np.array([factor * x, factor * y, factor * z])
     from scipy.spatial.transform import Rotation
 
     return np.asarray(Rotation.from_matrix(rotation).as_rotvec(), dtype=float)
