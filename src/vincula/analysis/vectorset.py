@@ -81,7 +81,8 @@ class VectorSet:
         lines = _range(self.lines[chosen], self.doubt)
         axes = self.axes[chosen]
         axes = axes - lines @ (lines.T @ axes)
-        return self._restricted(chosen, _principal(axes, self.doubt), lines)
+        largest = float(np.linalg.norm(self.axes, axis=0).max(initial=0.0))
+        return self._restricted(chosen, _principal(axes, largest, self.doubt), lines)
 
     def section(self, components: Sequence[str | int]) -> VectorSet:
         """The cut of the set by the plane where all other components are zero.
@@ -174,8 +175,8 @@ def _range(columns: Matrix, doubt: float) -> Matrix:
     return svd(columns)[0][:, :rank]
 
 
-def _principal(axes: Matrix, doubt: float) -> Matrix:
-    """Orthogonal semi-axes of the set spanned by any generators."""
-    rank = decide_rank(axes, name="projection", uncertainty={"subspace": doubt}).rank
+def _principal(axes: Matrix, largest: float, doubt: float) -> Matrix:
+    """Orthogonal semi-axes of the set spanned by any generators; `largest` is what they came from."""
+    rank = decide_rank(axes, name="projection", scale=largest, uncertainty={"subspace": doubt}).rank
     left, values, _ = svd(axes)
     return left[:, :rank] * values[:rank]

@@ -158,7 +158,8 @@ def _spatial_axes(axes: Axes3D) -> None:
     axes.set_ylabel("y [m]", labelpad=-9)
     axes.set_zlabel("z [m]", labelpad=-9)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+        prune = "lower" if axis is axes.yaxis else None
+        axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10], prune=prune))
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
     axes.tick_params(pad=-4, labelsize=6)
     axes.tick_params(axis="z", pad=-1)

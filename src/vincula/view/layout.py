@@ -15,10 +15,10 @@ PAGE = 7.16
 """Width of a page of a journal [inch]."""
 
 LEFT, RIGHT, GAP = 0.46, 0.06, 0.12
-BELOW_PANELS = 0.37
+BELOW_PANELS = 0.35
 TITLE_LINE = 0.125
 NOTE_LINE = 0.118
-LEGEND_LINE = 0.15
+LEGEND_LINE = 0.135
 MARGIN = 15.0
 """Free space between what is drawn and the frame [points]."""
 TALLEST, LOWEST = 1.35, 0.5

@@ -40,14 +40,15 @@ class PlanarPanel:
         """The mechanism, then the ellipsoid, then what must stay legible above it."""
         (left, bottom), (right, top) = self.low * self.scale, self.high * self.scale
         frame = np.array([[left, bottom], [right, bottom], [right, top], [left, top], [left, bottom]])
-        obstacles = [sampled(frame, 4.0), self._draw_links(scene), self._draw_grounds(scene)]
+        lines = [self._draw_links(scene), self._draw_grounds(scene)]
         if shape is not None:
-            obstacles.append(self._draw_shape(shape))
-        obstacles += [self._draw_joints(scene), self._draw_contacts(scene)]
+            lines.append(self._draw_shape(shape))
+        signs = [sampled(frame, 4.0), self._draw_joints(scene), self._draw_contacts(scene)]
         if scene.reference is not None:
             self.axes.plot(*scene.reference.at[:, None], "+", color="black", ms=6, mew=1.1, zorder=9)
+            signs.append(scene.reference.at[None, :] * self.scale)
         if names:
-            self._draw_names(scene, np.vstack(obstacles))
+            self._draw_names(scene, np.vstack(signs), np.vstack(lines))
 
     def _draw_links(self, scene: Scene) -> Matrix:
         drawn = []
@@ -151,13 +152,13 @@ class PlanarPanel:
         back, forth = bounds.min(axis=0).max(), bounds.max(axis=0).min()
         return middle + back * direction, middle + forth * direction
 
-    def _draw_names(self, scene: Scene, obstacles: Matrix) -> None:
+    def _draw_names(self, scene: Scene, signs: Matrix, lines: Matrix) -> None:
         from matplotlib.patheffects import withStroke
 
         marks: list[JointMark | ContactMark] = [*scene.joints, *scene.contacts]
         anchors = [mark.at * self.scale for mark in marks]
         texts = [mark.name for mark in marks]
-        for centre, text in zip(place_labels(anchors, texts, obstacles), texts, strict=True):
+        for centre, text in zip(place_labels(anchors, texts, signs, lines), texts, strict=True):
             x, y = centre / self.scale
             label = self.axes.text(
                 x, y, text, ha="center", va="center", fontsize=6.5, color=style.INK, zorder=10

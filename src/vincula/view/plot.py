@@ -69,7 +69,7 @@ def plot_mechanism(
         ellipsoids: Which, in order; by default all four, or none without a reference member.  An
             empty list draws the mechanism alone.
         weights: Weights of the ellipsoids; the mechanism's own by default.
-        names: Whether joints are named; by default in the plane up to 12 joints.
+        names: Whether the first panel (of every row) names the joints; by default up to 12 joints.
         width: Width of the figure [inch]; a journal's column in the plane, its page in space.
         direction: Elevation and azimuth of the view of a spatial mechanism [deg].
 
@@ -109,7 +109,7 @@ def plot_comparison(
         q: Configuration; the home configuration by default.
         ellipsoids: Which, in order; all four by default.
         weights: Weights of the ellipsoids; the mechanism's own by default.
-        names: Whether joints are named; by default in the plane up to 12 joints.
+        names: Whether the first panel (of every row) names the joints; by default up to 12 joints.
         width: Width of the figure [inch].
         direction: Elevation and azimuth of the view of a spatial mechanism [deg].
 
@@ -171,7 +171,7 @@ def _kinds(mechanism: Mechanism, ellipsoids: Sequence[Kind] | None) -> tuple[Kin
 def _named(mechanism: Mechanism, names: bool | None) -> bool:
     if names is not None:
         return names
-    return mechanism.space is PLANAR and len(mechanism.joints) <= NAMED_UP_TO
+    return len(mechanism.joints) <= NAMED_UP_TO
 
 
 def _panels(

@@ -9,6 +9,7 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.view import style
 from vincula.view.drawables import JointMark, Scene
+from vincula.view.labels import place_labels, sampled
 from vincula.view.shapes import EllipsoidShape, silhouette
 
 if TYPE_CHECKING:
@@ -51,9 +52,49 @@ class SpatialPanel:
         if scene.reference is not None:
             self.axes.plot(*scene.reference.at[:, None], "+", color="black", ms=7, mew=1.1, zorder=20)
         if names:
-            for mark in scene.joints:
-                x, y, z = mark.at + 0.03 * self.size
-                self.axes.text(x, y, z, mark.name, fontsize=6, color=style.INK, zorder=21)
+            self._draw_names(scene)
+
+    def _draw_names(self, scene: Scene) -> None:
+        """Names of the joints, placed on paper: beside their symbols, clear of links and each other."""
+        self.axes.apply_aspect()
+        marks = [mark for mark in scene.joints if mark.type != "fixed"]
+        anchors = self._on_paper(np.array([mark.at for mark in marks]).reshape(-1, 3))
+        outlines = [sampled(self._on_paper(link.points), 4.0) for link in scene.links if len(link.points)]
+        circle = 2.5 * np.column_stack([np.cos(np.arange(8.0)), np.sin(np.arange(8.0))])
+        signs = np.vstack([np.zeros((0, 2)), *(anchor + circle for anchor in anchors)])
+        lines = np.vstack([np.zeros((0, 2)), *outlines])
+        centres = place_labels(list(anchors), [mark.name for mark in marks], signs, lines)
+        for mark, anchor, centre in zip(marks, anchors, centres, strict=True):
+            self._write(mark.name, mark.at, centre - anchor)
+
+    def _on_paper(self, points: Matrix) -> Matrix:
+        """Where points of space are on paper, one a row [points]."""
+        pixels = self.axes.transData.transform(self._projected(points))
+        return np.asarray(pixels * 72.0 / self.axes.figure.dpi)
+
+    def _projected(self, points: Matrix) -> Matrix:
+        """Points of space in the coordinates of the picture plane, one a row."""
+        from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+        x, y, _ = proj_transform(*points.T, self.axes.get_proj())
+        return np.column_stack([x, y])
+
+    def _write(self, text: str, at: Vector, offset: Vector) -> None:
+        """A text beside a place in space, `offset` in points away from it."""
+        from matplotlib.patheffects import withStroke
+
+        self.axes.annotate(
+            text,
+            xy=tuple(self._projected(at[None, :])[0]),
+            xytext=tuple(offset),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=6,
+            color=style.INK,
+            path_effects=[withStroke(linewidth=1.6, foreground="white")],
+            zorder=21,
+        )
 
     def _draw_grounds(self, scene: Scene) -> None:
         feet = np.array([ground.at for ground in scene.grounds]).reshape(-1, 3)

@@ -122,8 +122,14 @@ def unbounded_text(shape: EllipsoidShape) -> str:
 
 
 def scale_text(shape: EllipsoidShape) -> str:
-    """How long one unit is drawn; empty where nothing bounded is drawn."""
-    return f"1 {shape.unit} = {shape.scale:g} m" if shape.drawn.axes.shape[1] else ""
+    """How long one unit is drawn, or what is drawn instead where nothing has a length."""
+    bounded, free = shape.drawn.axes.shape[1], shape.drawn.lines.shape[1]
+    if bounded:
+        return f"1 {shape.unit} = {shape.scale:g} m"
+    view = "shadow" if shape.view == "projection" else "cut"
+    if not free:
+        return f"{view}: zero only"
+    return f"{view}: everything" if free == len(shape.drawn.components) else f"{view}: unbounded"
 
 
 def note(shapes: Sequence[EllipsoidShape], planar: bool) -> str:

@@ -37,7 +37,7 @@ def support(towards: Vector, size: float = 6.5) -> list[Stroke]:
     return [Stroke(triangle @ turn.T, filled=True), *_hatched_line(1.0 * size, -size, turn)]
 
 
-def guide(towards: Vector, size: float = 22.0, gap: float = 4.5) -> list[Stroke]:
+def guide(towards: Vector, size: float = 13.0, gap: float = 4.5) -> list[Stroke]:
     """A slider's guide: a hatched line at `gap` beside it."""
     return _hatched_line(size, -gap, _turn(towards))
 
