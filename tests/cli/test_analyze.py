@@ -84,7 +84,7 @@ def test_legs_that_coincide_leave_three_infinite_efficiencies(run_json) -> None:
 def test_spherical_joints_leave_six_free_leg_spins(run_json) -> None:
     found = run_json("analyze", "example:stewart-spherical")
     assert found["mobility"]["summary"]["passive_redundancy"] == 6
-    assert sum("can move freely" in verdict for verdict in found["mobility"]["verdicts"]) == 6
+    assert sum("can turn freely" in verdict for verdict in found["mobility"]["verdicts"]) == 6
 
 
 def test_json_keys_of_the_contract(run_json) -> None:
@@ -108,7 +108,7 @@ def test_json_keys_of_the_contract(run_json) -> None:
         assert finite == sorted(finite, reverse=True)
         for direction in (d for d in one["task_directions"] if d is not None):
             assert math.hypot(*direction) == pytest.approx(1.0)
-            assert max(direction, key=abs) > 0
+            assert max(direction) >= (1 - 1e-9) * max(map(abs, direction))
 
 
 # The page -----------------------------------------------------------------------------------------
@@ -172,7 +172,7 @@ def test_locked_joints(run_json) -> None:
 
 def test_a_configuration_that_stays_closed(run_json) -> None:
     home, turned = (
-        run_json("analyze", "example:serial-2r", *words) for words in ([], ["--at", "q1=0.5,q2=0.25"])
+        run_json("analyze", "example:serial-2r", *words) for words in ([], ["--at", "shoulder=0.5,elbow=0.25"])
     )
     assert home["kinematic"]["efficiencies"] != turned["kinematic"]["efficiencies"]
 

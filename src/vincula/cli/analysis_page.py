@@ -134,7 +134,7 @@ def _ellipsoid(page: Page, ellipsoid: Ellipsoid, analysis: Analysis) -> None:
     if ellipsoid.kind in ("passive force", "dual force") and _repeats(ellipsoid, analysis.active_force):
         page.sentence("the same finite values and directions as the active force ellipsoid")
         return
-    in_words = [_in_words(ellipsoid, width) for width in (44, 34, 24, 20)]
+    in_words = [_in_words(ellipsoid, 44), _in_words(ellipsoid, 34), _stacked(ellipsoid, 42)]
     page.table(*([] if ellipsoid.kind == "internal force" else [_in_columns(ellipsoid)]), *in_words)
 
 
@@ -201,6 +201,22 @@ def _in_words(ellipsoid: Ellipsoid, width: int) -> Table:
             _values(ellipsoid), ellipsoid.task_directions, ellipsoid.motor_directions, strict=True
         )
     ]
+    return Table(columns, rows)
+
+
+def _stacked(ellipsoid: Ellipsoid, width: int) -> Table:
+    """The same for narrow terminals: the motors below the direction."""
+    units = ", ".join(dict.fromkeys(ellipsoid.units))
+    motor_units = ", ".join(dict.fromkeys(ellipsoid.motor_units))
+    columns = [*_HEAD, Column(f"direction [{units}]\nby motors [{motor_units}]", fold=True)]
+    rows = []
+    for start, task, motor in zip(
+        _values(ellipsoid), ellipsoid.task_directions, ellipsoid.motor_directions, strict=True
+    ):
+        lines = ["-" if task is None else combination(task, ellipsoid.components, width)]
+        if motor is not None:
+            lines.append("by " + combination(motor, ellipsoid.motors, width - 3).replace("\n", "\n   "))
+        rows.append([*start, "\n".join(lines)])
     return Table(columns, rows)
 
 

@@ -37,6 +37,10 @@ _WRITTEN_BY_THE_USER = (
 )
 
 
+class BadOptionError(VinculaError):
+    """Something written on the command line that cannot be used."""
+
+
 def exit_code(error: VinculaError) -> int:
     """The exit code of an error.
 

@@ -172,7 +172,7 @@ def _walk(loop: Facts) -> str:
 
 def _load(page: Page, load: Facts, everything: bool) -> None:
     """What became of the elements of the file, in one line for what was used and one a reason."""
-    if not load["counts"] and not load["notes"]:
+    if load["format"] == "example":
         return
     page.heading("Read from the file", f"format {load['format']}")
     used = [f"{count['used']} {kind}" for kind, count in load["counts"].items() if count["used"]]

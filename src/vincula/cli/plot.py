@@ -83,7 +83,7 @@ def plot_command(
                 "schema": "vincula/figure/1",
                 "mechanism": mechanism.name,
                 "reference": None if mechanism.reference is None else mechanism.reference.body,
-                "ellipsoids": list(ellipsoids or DRAWABLE),
+                "ellipsoids": [name for name in ellipsoids or DRAWABLE if name != "none"],
                 "figure": output,
             }
         )

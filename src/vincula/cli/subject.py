@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeVar, cast
 
-import click
-
+from vincula.cli.exits import BadOptionError
 from vincula.errors import MissingReferenceError, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -55,12 +54,12 @@ class Subject:
         """J_a, J_p and G at the configuration.
 
         Raises:
-            click.UsageError: No reference member; lists the bodies and the option.
+            BadOptionError: No reference member; lists the bodies and the option.
             ClosureError: A loop is open.
         """
         if self.mechanism.reference is None:
             missing = MissingReferenceError(body.name for body in self.mechanism.bodies)
-            raise click.UsageError(f"{missing}. Say --reference BODY.")
+            raise BadOptionError(f"{missing}. Say --reference BODY.")
         return self.mechanism.linearize(self.configuration)
 
 
@@ -79,12 +78,12 @@ def read_subject(
     Raises:
         FileError: The file cannot be read.
         ModelError: A name or value in an option that the mechanism does not have.
-        click.UsageError: An option that cannot be understood.
+        BadOptionError: An option that cannot be understood.
     """
     from vincula.files.configuration import read_configuration
     from vincula.files.load import load_with_report
 
-    mechanism, report = load_with_report(file, parameters=dict(parameters))
+    mechanism, report = _usage("--set" if parameters else "", lambda: load_with_report(file, parameters))
     if lock is not None:
         mechanism = _usage("--lock", lambda: mechanism.with_lock(lock))
     mechanism = with_reference(mechanism, reference, axes)
@@ -92,7 +91,7 @@ def read_subject(
         mechanism = mechanism.with_tolerance(*tolerances(tolerance))
     configuration = mechanism.home
     if at is not None:
-        configuration = _usage("--at", lambda: read_configuration(at, mechanism))
+        configuration = _usage("--at", lambda: read_configuration(at, mechanism, report.units))
     return Subject(file, mechanism, configuration, report)
 
 
@@ -120,7 +119,7 @@ def split_reference(mechanism: Mechanism, text: str) -> tuple[str, list[float] |
     if body not in mechanism.body and body not in ("ground", "world"):
         carriers = [f"{frame.body}@{frame.name}" for frame in mechanism.frames if frame.name == body]
         if carriers:
-            raise click.UsageError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}")
+            raise BadOptionError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}")
         raise UnknownNameError("body", body, mechanism.body)
     if not point:
         return body, None, None
@@ -134,7 +133,7 @@ def tolerances(text: str) -> tuple[float, float]:
     """Length [m] and angle [rad] of a `--tolerance` text such as `0.1mm,0.05deg`.
 
     Raises:
-        click.UsageError: A negative or repeated tolerance, or no number.
+        BadOptionError: A negative or repeated tolerance, or no number.
     """
     from vincula.spatial.units import quantity
 
@@ -143,7 +142,7 @@ def tolerances(text: str) -> tuple[float, float]:
         dimension: Literal["length", "angle"] = "angle" if part.strip().endswith(("rad", "deg")) else "length"
         value = _usage("--tolerance", partial(quantity, part, dimension, "tolerance"))
         if value < 0.0 or dimension in found:
-            raise click.UsageError(
+            raise BadOptionError(
                 f"--tolerance {text!r}: give one length and one angle, not negative, like 0.1mm,0.05deg"
             )
         found[dimension] = value
@@ -158,8 +157,10 @@ def _numbers(text: str) -> list[float] | None:
 
 
 def _usage(option: str, action: Callable[[], Result]) -> Result:
-    """What the action returns; a refusal is the fault of the option."""
+    """What the action returns; a refusal is the fault of what was written in the option."""
     try:
         return action()
     except ModelError as error:
-        raise click.UsageError(f"{option}: {error}") from error
+        if isinstance(error, UnknownNameError) and error.kind == "example":
+            raise  # FILE itself, whatever the options say
+        raise BadOptionError(f"{option}: {error}" if option else str(error)) from error
