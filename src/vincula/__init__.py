@@ -45,6 +45,8 @@ if TYPE_CHECKING:
         VinculaError,
         WeightError,
     )
+    from vincula.mechanism.branches import Branch
+    from vincula.mechanism.closed import ClosedConfiguration
     from vincula.mechanism.configuration import Configuration
     from vincula.mechanism.drawing import Contact, In, Reference
     from vincula.mechanism.drawing import DrawnBody as Body
@@ -61,13 +63,18 @@ if TYPE_CHECKING:
     )
     from vincula.mechanism.mechanism import Mechanism
     from vincula.mechanism.parts import ALL, Coupling, Cut, Drive, Limits
+    from vincula.mechanism.paths import Path, PathEvent
+    from vincula.mechanism.singularities import Singularity
     from vincula.model import LinearModel
+    from vincula.spatial.poses import Pose
     from vincula.weights import Weights, characteristic_length_weights
 
 __all__ = [
     "ALL",
     "Analysis",
     "Body",
+    "Branch",
+    "ClosedConfiguration",
     "ClosureError",
     "Configuration",
     "Contact",
@@ -90,13 +97,17 @@ __all__ = [
     "MixedUnitsWarning",
     "ModelError",
     "NonFiniteError",
+    "Path",
+    "PathEvent",
     "PlanarJoint",
+    "Pose",
     "Prismatic",
     "RankAmbiguityWarning",
     "Reference",
     "Revolute",
     "Screw",
     "ShapeError",
+    "Singularity",
     "Spherical",
     "TopologyError",
     "Universal",
@@ -149,6 +160,8 @@ _HOME = {
     "UnsupportedFeatureError": "vincula.errors:UnsupportedFeatureError",
     "VinculaError": "vincula.errors:VinculaError",
     "WeightError": "vincula.errors:WeightError",
+    "Branch": "vincula.mechanism.branches:Branch",
+    "ClosedConfiguration": "vincula.mechanism.closed:ClosedConfiguration",
     "Configuration": "vincula.mechanism.configuration:Configuration",
     "Body": "vincula.mechanism.drawing:DrawnBody",
     "Contact": "vincula.mechanism.drawing:Contact",
@@ -169,7 +182,11 @@ _HOME = {
     "Cut": "vincula.mechanism.parts:Cut",
     "Drive": "vincula.mechanism.parts:Drive",
     "Limits": "vincula.mechanism.parts:Limits",
+    "Path": "vincula.mechanism.paths:Path",
+    "PathEvent": "vincula.mechanism.paths:PathEvent",
+    "Singularity": "vincula.mechanism.singularities:Singularity",
     "LinearModel": "vincula.model:LinearModel",
+    "Pose": "vincula.spatial.poses:Pose",
     "Weights": "vincula.weights:Weights",
     "characteristic_length_weights": "vincula.weights:characteristic_length_weights",
 }

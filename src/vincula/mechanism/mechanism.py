@@ -13,6 +13,7 @@ from vincula.arrays import Vector
 from vincula.errors import MissingReferenceError
 from vincula.mechanism import names as naming
 from vincula.mechanism import validation
+from vincula.mechanism.closable import Closable
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import JointType, joint_type
 from vincula.mechanism.parts import (
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism:
+class Mechanism(Closable):
     """Any mechanism with loops, passive joints and contacts.
 
     Draw one with `Mechanism.planar` or `Mechanism.spatial`, or load one with `vincula.load`.
@@ -258,8 +259,7 @@ class Mechanism:
     @cached_property
     def home(self) -> Configuration:
         """The configuration that the mechanism is drawn or stored in."""
-        values = {j.name: np.array(j.home, dtype=float) for j in self.all_joints if not j.closure}
-        return Configuration(values)
+        return Configuration({j.name: np.array(j.home, float) for j in self.all_joints if not j.closure})
 
     def configuration(
         self, values: Mapping[str, float | Sequence[float] | Vector] | None = None

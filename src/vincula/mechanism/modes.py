@@ -8,7 +8,8 @@ import numpy as np
 
 from vincula.arrays import Vector
 from vincula.errors import ClosureError, ModelError, listing
-from vincula.mechanism.closure import ClosedConfiguration, close
+from vincula.mechanism.closed import ClosedConfiguration
+from vincula.mechanism.closure import close
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import MotorValues
 from vincula.mechanism.kinematics import part_frames

@@ -1,0 +1,104 @@
+"""Another body as the ground: a foot seen from the trunk, a platform held instead of its base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from vincula.errors import UnknownNameError
+from vincula.mechanism.parts import GROUND, Body, ContactPart, Cut, Frame, Joint, ReferenceMember
+from vincula.spatial.poses import Pose
+
+if TYPE_CHECKING:
+    from vincula.mechanism.mechanism import Mechanism
+
+_Part = TypeVar("_Part", Joint, ContactPart)
+
+
+def with_ground(mechanism: Mechanism, body: str) -> Mechanism:
+    """The same mechanism seen from a body that is now the ground; see `Mechanism.with_ground`."""
+    if body == GROUND:
+        return mechanism
+    if body not in mechanism.body:
+        raise UnknownNameError("body", body, mechanism.body)
+    seen = mechanism.body[body].pose.inverse()
+    old = _free_name(mechanism, "world")
+    dropped = _floating(mechanism, body)
+    needed = _old_ground_needed(mechanism, dropped)
+    names = {body: GROUND, GROUND: old}
+    bodies = tuple(
+        replace(b, pose=seen @ b.pose) for b in mechanism.bodies if b.name != body
+    ) + ((Body(old, seen),) if needed else ())
+    gone = {
+        axis
+        for joint in mechanism.joints
+        if joint.name in dropped
+        for axis in mechanism.type_of(joint).axis_names(joint.name)
+    }
+    return replace(
+        mechanism,
+        bodies=bodies,
+        joints=tuple(_renamed(j, names) for j in mechanism.joints if j.name not in dropped),
+        contacts=tuple(_renamed(c, names) for c in mechanism.contacts),
+        frames=_frames(mechanism, names, needed),
+        couplings=tuple(c for c in mechanism.couplings if not gone.intersection(c.axes)),
+        drives=tuple(d for d in mechanism.drives if not gone.intersection(d.drives)),
+        active=tuple(a for a in mechanism.active if a not in gone),
+        lock=tuple(a for a in mechanism.lock if a not in gone),
+        reference=_reference(mechanism, body, seen),
+        motors={m: axis for m, axis in mechanism.motors.items() if axis not in gone | dropped},
+        keyframes=_without(mechanism.keyframes, dropped),
+        notes=(*mechanism.notes, f"{body} is the ground: positions and directions are in its axes"),
+    )
+
+
+def _free_name(mechanism: Mechanism, wanted: str) -> str:
+    name = wanted
+    while name in mechanism.body:
+        name = f"old {name}"
+    return name
+
+
+def _floating(mechanism: Mechanism, body: str) -> set[str]:
+    """Free joints between the old ground and the new one: they constrain nothing."""
+    return {j.name for j in mechanism.joints if j.type == "free" and {j.first, j.second} == {GROUND, body}}
+
+
+def _old_ground_needed(mechanism: Mechanism, dropped: set[str]) -> bool:
+    """Whether anything but floating joints touches the old ground."""
+    parts: list[Joint | ContactPart] = [j for j in mechanism.joints if j.name not in dropped]
+    parts += mechanism.contacts
+    return any(GROUND in (part.first, part.second) for part in parts)
+
+
+def _renamed(part: _Part, names: Mapping[str, str]) -> _Part:
+    return replace(part, first=names.get(part.first, part.first), second=names.get(part.second, part.second))
+
+
+def _frames(mechanism: Mechanism, names: Mapping[str, str], needed: bool) -> tuple[Frame, ...]:
+    kept = [frame for frame in mechanism.frames if needed or frame.body != GROUND]
+    return tuple(replace(frame, body=names.get(frame.body, frame.body)) for frame in kept)
+
+
+def _reference(mechanism: Mechanism, body: str, seen: Pose) -> ReferenceMember | None:
+    """The reference member with its cut points in the new axes; none when it is the new ground."""
+    reference = mechanism.reference
+    if reference is None or reference.body == body:
+        return None
+    cuts = {
+        name: Cut(cut.kind, None if cut.at is None else tuple(map(float, seen.apply(np.array(cut.at)))))
+        for name, cut in reference.cuts.items()
+    }
+    return replace(reference, cuts=cuts)
+
+
+def _without(
+    keyframes: Mapping[str, Mapping[str, Sequence[float]]], dropped: set[str]
+) -> dict[str, dict[str, Sequence[float]]]:
+    return {
+        name: {joint: value for joint, value in values.items() if joint not in dropped}
+        for name, values in keyframes.items()
+    }
