@@ -68,6 +68,7 @@ def check_document(document: Document, limits: Limits) -> None:
     problems = Problems(document.file)
     for part in document.all_documents():
         in_radians = angle_unit(part) == "radian"
+        _check_tendons(part.root, problems)
         for element in part.root.walk():
             _check_refused(element, problems)
             _check_name(element, problems, limits)
@@ -96,6 +97,22 @@ def _check_refused(element: Element, problems: Problems) -> None:
         problems.add(element.place, reason, unsupported=True)
     elif element.tag == "flexcomp" or (inside == "equality" and element.attributes.get("active") != "false"):
         problems.add(element.place, f"not supported: {reason}", unsupported=True)
+
+
+def _check_tendons(root: Element, problems: Problems) -> None:
+    """Active equalities of tendons through space; where a default class may switch them off, not here."""
+    if any(e.tag == "equality" and "active" in e.attributes for e in root.walk()):
+        return
+    in_space = {e.name for e in root.walk() if e.tag == "spatial"} - {""}
+    for section in root.find_all("equality"):
+        for element in section.find_all("tendon"):
+            named = [element.attributes.get(key, "") for key in ("tendon1", "tendon2")]
+            lengths = [name for name in named if name in in_space]
+            if lengths and element.attributes.get("active") != "false":
+                what = f"not supported: tendon {shown(lengths[0])} runs through space"
+                problems.add(
+                    element.place, f"{what}, so its length is no sum of joint values", unsupported=True
+                )
 
 
 def _check_name(element: Element, problems: Problems, limits: Limits) -> None:

@@ -12,6 +12,7 @@ import mujoco
 
 from vincula.files.mjcf_document import Document
 from vincula.files.mjcf_text import Written, write_bare, write_complete
+from vincula.files.mjcf_words import suggestion_for
 from vincula.files.problems import Problems
 
 _LINE: Final = re.compile(r"line (\d+)")
@@ -71,5 +72,6 @@ def _refuse(document: Document, written: Written, error: Exception) -> Any:
     message = _PREFIX.sub("", first.strip())
     place = (element or document.root).place
     problems = Problems(document.file)
-    problems.add(place, f"MuJoCo: {message}")
+    name, choices = suggestion_for(message, element, document)
+    problems.add(place, f"MuJoCo: {message}", name=name, choices=choices)
     problems.refuse()

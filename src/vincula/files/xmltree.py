@@ -124,29 +124,33 @@ class _TreeBuilder:
         return f"; <{last.tag}> of line {last.line} is open"
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        parser, limits, waiting = self._parser, self._limits, self._open
+        line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
         self._count += 1
-        limits = self._limits
-        line, column = self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1
         if self._count % _CHECK_EVERY == 0:
             self._deadline.check(line, column)
         if self._count > limits.nodes:
             self._refuse(f"more than {limits.nodes} elements", line, column)
-        if len(self._open) >= limits.depth:
+        if len(waiting) >= limits.depth:
             self._refuse(f"elements are nested more than {limits.depth} deep", line, column)
-        if len(attributes) > limits.attributes:
-            self._refuse(f"more than {limits.attributes} attributes at one element", line, column)
-        for name, value in attributes.items():
-            if len(value) > limits.attribute_characters:
-                most = limits.attribute_characters
-                self._refuse(f"attribute {shown(name)} has more than {most} characters", line, column)
-        parent = self._open[-1] if self._open else None
+        if attributes:
+            self._check_attributes(attributes, line, column)
+        parent = waiting[-1] if waiting else None
         element = Element(tag, attributes, self._source.file, line, column, parent)
         if parent is None:
             self._root = element
         else:
             parent.children.append(element)
-        self._open.append(element)
+        waiting.append(element)
         self._texts.append([])
+
+    def _check_attributes(self, attributes: dict[str, str], line: int, column: int) -> None:
+        if len(attributes) > self._limits.attributes:
+            self._refuse(f"more than {self._limits.attributes} attributes at one element", line, column)
+        most = self._limits.attribute_characters
+        for name, value in attributes.items():
+            if len(value) > most:
+                self._refuse(f"attribute {shown(name)} has more than {most} characters", line, column)
 
     def _end(self, _tag: str) -> None:
         self._open.pop().text = "".join(self._texts.pop()).strip()
