@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         VinculaError,
         WeightError,
     )
+    from vincula.files.load import load
     from vincula.mechanism.branches import Branch
     from vincula.mechanism.closed import ClosedConfiguration
     from vincula.mechanism.configuration import Configuration
@@ -125,12 +126,14 @@ __all__ = [
     "inverse_condition_number",
     "isotropy",
     "kinematic_ellipsoid",
+    "load",
     "passive_force_ellipsoid",
     "smallest_singular_value",
     "yoshikawa_volume",
 ]
 
 _HOME = {
+    "load": "vincula.files.load:load",
     "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
     "condition_number": "vincula.analysis.indices:condition_number",
     "inverse_condition_number": "vincula.analysis.indices:inverse_condition_number",
