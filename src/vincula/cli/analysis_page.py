@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vincula.cli.page import Column, Page, Table, combination, number, point
+from vincula.cli.ellipsoid_tables import add_ellipsoid
+from vincula.cli.output import said_warnings
+from vincula.cli.page import Column, Page, Table, number, point
 from vincula.errors import listing
 
 if TYPE_CHECKING:
-    from vincula.analysis.ellipsoid import Ellipsoid
     from vincula.analysis.maps import LinearMap
     from vincula.analysis.result import Analysis
-    from vincula.arrays import Vector
+    from vincula.cli.subject import Subject
     from vincula.labels import Column as LabelledColumn
     from vincula.model import LinearModel
 
@@ -29,46 +30,28 @@ SUMMARY: Final = {
     "static_indeterminacy": "constraint forces that neither load nor torque determines",
 }
 
-READINGS: Final = {
-    "kinematic": {
-        "efficiency": "speed of the member per motor speed; large is fast",
-        "accuracy": "error of the member per motor error; large is inaccurate",
-    },
-    "active force": {
-        "efficiency": "what the motors push through the member, per motor torque",
-        "accuracy": "error of the pushed force per error of motor torque; large is inaccurate",
-    },
-    "passive force": {
-        "efficiency": "what the member resists, per motor torque; inf costs no torque",
-        "accuracy": "error of the resisted load per error of motor torque; large is inaccurate",
-    },
-    "internal force": {
-        "efficiency": "squeeze without a load on the member, per motor torque",
-        "accuracy": "error of the squeeze per error of motor torque; large is inaccurate",
-    },
-    "dual force": {
-        "efficiency": "the force problem dual to the kinematic one",
-        "accuracy": "the force problem dual to the kinematic one; large is inaccurate",
-    },
-}
 
+def analysis_page(analysis: Analysis, subject: Subject) -> Page:
+    """The page for an analysis.
 
-def analysis_page(analysis: Analysis) -> Page:
-    """The page for an analysis."""
+    Args:
+        analysis: What is told.
+        subject: What was analysed.
+    """
     model = analysis.model
     page = Page()
-    page.heading(model.mechanism, "at one configuration")
-    page.facts(_subject(analysis))
+    page.heading(model.mechanism, f"{subject.mechanism.space.name} mechanism from {subject.file}")
+    page.facts(_subject(analysis, subject))
     page.heading("In words")
     for verdict in analysis.verdicts:
         page.sentence(verdict, "-")
-    for warning in analysis.warnings:
+    for warning in said_warnings([analysis]):
         page.sentence(warning, "warning:")
     for note in model.notes:
         page.sentence(note, "note:")
     _counts(page, model)
     for ellipsoid in analysis.ellipsoids:
-        _ellipsoid(page, ellipsoid, analysis)
+        add_ellipsoid(page, ellipsoid, analysis)
     rates, torques = analysis.twist_from_rates, analysis.torque_from_wrench
     _map(page, "Motor rates to twist", "twist of the member per unit rate", rates, by_column=True)
     _map(page, "Load to motor torques", "torque that balances a unit load", torques)
@@ -77,17 +60,29 @@ def analysis_page(analysis: Analysis) -> Page:
     return page
 
 
-def _subject(analysis: Analysis) -> list[tuple[str, str]]:
+def _subject(analysis: Analysis, subject: Subject) -> list[tuple[str, str]]:
     model = analysis.model
+    metres = " m" if model.reference.endswith(")") or "," in model.reference else ""
+    home = subject.configuration == subject.mechanism.home
+    at = "" if home else listing(_values_away_from_home(subject), 12)
     cuts = [f"{cut.joint} ({cut.kind}) at {point(cut.at)}" for cut in model.cuts]
     return [
-        ("reference member", f"{model.reference} [m]; twist and wrench in {model.frame}"),
+        ("reference member", f"{model.reference}{metres}; twist and wrench in {model.frame}"),
+        ("configuration", at),
         ("motors", _names(model.motors)),
         ("passive axes", _names(model.passives)),
         ("constraints", f"{len(model.rows)} rows" + (f"; joints cut: {listing(cuts, 6)}" if cuts else "")),
         ("weights", _weights(analysis)),
         ("convention", "as printed in the paper" if analysis.convention == "printed" else ""),
     ]
+
+
+def _values_away_from_home(subject: Subject) -> Iterator[str]:
+    """`joint value` for every joint that is not where the file has it."""
+    home = subject.mechanism.home
+    for joint, values in subject.configuration.items():
+        if not np.array_equal(values, home[joint]):
+            yield f"{joint} {point(values) if len(values) > 1 else number(float(values[0]), 4)}"
 
 
 def _names(columns: Sequence[LabelledColumn]) -> str:
@@ -124,100 +119,6 @@ def _counts(page: Page, model: LinearModel) -> None:
     )
     twelve = model.ledger.counts.as_dict()
     page.sentence("  ".join(f"{name} {value}" for name, value in twelve.items()), "twelve counts:")
-
-
-def _ellipsoid(page: Page, ellipsoid: Ellipsoid, analysis: Analysis) -> None:
-    page.heading(f"{ellipsoid.kind.capitalize()} ellipsoid", READINGS[ellipsoid.kind][ellipsoid.viewpoint])
-    if not ellipsoid.classes:
-        page.sentence("none: there is no such force" if "force" in ellipsoid.kind else "none")
-        return
-    if ellipsoid.kind in ("passive force", "dual force") and _repeats(ellipsoid, analysis.active_force):
-        page.sentence("the same finite values and directions as the active force ellipsoid")
-        return
-    in_words = [_in_words(ellipsoid, 44), _in_words(ellipsoid, 34), _stacked(ellipsoid, 42)]
-    page.table(*([] if ellipsoid.kind == "internal force" else [_in_columns(ellipsoid)]), *in_words)
-
-
-def _repeats(one: Ellipsoid, other: Ellipsoid) -> bool:
-    """Whether one lists what the other lists as finite (reciprocal weights)."""
-    return (
-        set(one.classes) == {"finite"}
-        and np.array_equal(one.efficiencies, other.finite)
-        and all(
-            a is not None and b is not None and np.array_equal(a, b)
-            for a, b in zip(one.task_directions, other.task_directions, strict=False)
-        )
-    )
-
-
-def _values(ellipsoid: Ellipsoid) -> list[list[str]]:
-    return [
-        [number(value), number(axis), kind]
-        for value, axis, kind in zip(
-            ellipsoid.efficiencies, ellipsoid.semi_axes, ellipsoid.classes, strict=True
-        )
-    ]
-
-
-_HEAD: Final = [Column("efficiency", "right"), Column("semi-axis", "right"), Column("class")]
-
-
-def _in_columns(ellipsoid: Ellipsoid) -> Table:
-    """Directions with a column a component: easiest to compare, needs a wide terminal."""
-    names = [*ellipsoid.components, *ellipsoid.motors]
-    units = [*ellipsoid.units, *ellipsoid.motor_units]
-    columns = [*_HEAD, *(Column(f"{n}\n{u}", "right") for n, u in zip(names, units, strict=True))]
-    rows = []
-    for start, task, motor in zip(
-        _values(ellipsoid), ellipsoid.task_directions, ellipsoid.motor_directions, strict=True
-    ):
-        parts = [*_cells(task, len(ellipsoid.components)), *_cells(motor, len(ellipsoid.motors))]
-        rows.append([*start, *parts])
-    return Table(columns, rows)
-
-
-def _cells(direction: Vector | None, count: int) -> list[str]:
-    if direction is None:
-        return ["-"] * count
-    return ["0" if abs(x) < 5e-4 else f"{x:.3f}" for x in direction]
-
-
-def _in_words(ellipsoid: Ellipsoid, width: int) -> Table:
-    """Directions as sums over their components, in lines of a width."""
-    task_units = ", ".join(dict.fromkeys(ellipsoid.units))
-    motor_units = ", ".join(dict.fromkeys(ellipsoid.motor_units))
-    columns = [
-        *_HEAD,
-        Column(f"direction\n{task_units}", fold=True),
-        Column(f"motors\n{motor_units}", fold=True),
-    ]
-    rows = [
-        [
-            *start,
-            "-" if task is None else combination(task, ellipsoid.components, width),
-            "-" if motor is None else combination(motor, ellipsoid.motors, width),
-        ]
-        for start, task, motor in zip(
-            _values(ellipsoid), ellipsoid.task_directions, ellipsoid.motor_directions, strict=True
-        )
-    ]
-    return Table(columns, rows)
-
-
-def _stacked(ellipsoid: Ellipsoid, width: int) -> Table:
-    """The same for narrow terminals: the motors below the direction."""
-    units = ", ".join(dict.fromkeys(ellipsoid.units))
-    motor_units = ", ".join(dict.fromkeys(ellipsoid.motor_units))
-    columns = [*_HEAD, Column(f"direction [{units}]\nby motors [{motor_units}]", fold=True)]
-    rows = []
-    for start, task, motor in zip(
-        _values(ellipsoid), ellipsoid.task_directions, ellipsoid.motor_directions, strict=True
-    ):
-        lines = ["-" if task is None else combination(task, ellipsoid.components, width)]
-        if motor is not None:
-            lines.append("by " + combination(motor, ellipsoid.motors, width - 3).replace("\n", "\n   "))
-        rows.append([*start, "\n".join(lines)])
-    return Table(columns, rows)
 
 
 def _map(page: Page, title: str, note: str, found: LinearMap, *, by_column: bool = False) -> None:

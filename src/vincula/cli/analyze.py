@@ -17,7 +17,7 @@ from vincula.cli.options import (
     viewpoint_option,
     weights_option,
 )
-from vincula.cli.output import print_json, warnings_on_stderr
+from vincula.cli.output import print_json, said_warnings, tell, warnings_on_stderr
 
 if TYPE_CHECKING:
     from vincula.analysis.ellipsoid import Convention, Viewpoint
@@ -48,13 +48,14 @@ def analyze_command(
     from vincula.analysis.result import analyze
     from vincula.cli.subject import read_subject
 
-    with warnings_on_stderr(quiet=not as_json):
+    with warnings_on_stderr(quiet=True):
         subject = read_subject(file, **options).with_active(active).with_weights(weights)
         analysis = analyze(subject.linearize(), viewpoint=viewpoint, convention=convention)
         if as_json:
+            tell(said_warnings([analysis]))
             print_json(analysis.to_dict())
         else:
             from vincula.cli.analysis_page import analysis_page
 
-            analysis_page(analysis).show()
+            analysis_page(analysis, subject).show()
     ctx.exit(DOUBTFUL if strict and analysis.ledger.status == "doubtful" else DONE)

@@ -9,7 +9,7 @@ import click
 
 from vincula.cli.exits import DONE, DOUBTFUL
 from vincula.cli.options import mechanism_options, output_options, strict_option, together, weights_option
-from vincula.cli.output import print_json, warnings_on_stderr
+from vincula.cli.output import print_json, said_warnings, tell, warnings_on_stderr
 
 if TYPE_CHECKING:
     from vincula.analysis.ellipsoid import Ellipsoid
@@ -78,11 +78,12 @@ def compare_command(
     from vincula.analysis.result import analyze
     from vincula.cli.subject import read_subject
 
-    with warnings_on_stderr():
+    with warnings_on_stderr(quiet=True):
         subject = read_subject(file, **options)
         variants = [subject.with_active(design).with_weights(weights) for design in designs]
         analyses = [analyze(variant.linearize()) for variant in variants]
         ranked = ranked_designs(analyses, criterion, on)
+    tell(said_warnings(analyses))
     if as_json:
         print_json(_as_dictionary(ranked, criterion, on))
     else:

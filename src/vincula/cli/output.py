@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
+
+if TYPE_CHECKING:
+    from vincula.analysis.result import Analysis
 
 
 def print_json(value: Mapping[str, Any]) -> None:
@@ -18,12 +21,44 @@ def print_json(value: Mapping[str, Any]) -> None:
     click.echo(json.dumps(value, indent=2, allow_nan=False))
 
 
+def said_warnings(analyses: Iterable[Analysis]) -> list[str]:
+    """The warnings of analyses for somebody at the command line, each once.
+
+    What the library says about mixed units speaks of Python; here one sentence names the option.
+    """
+    texts: list[str] = []
+    for analysis in analyses:
+        kinds = analysis.classified_warnings
+        texts += [text for text, kind in kinds if not issubclass(kind, MixedUnitsWarning)]
+        if any(issubclass(kind, MixedUnitsWarning) for _, kind in kinds):
+            texts.append(_mixed_units_advice(analysis))
+    return list(dict.fromkeys(texts))
+
+
+def _mixed_units_advice(analysis: Analysis) -> str:
+    model = analysis.model
+    length = model.length or 1.0
+    square = f"{length * length:.3g}"
+    twist = ",".join("1" if linear else square for linear in model.twist_linear)
+    return (
+        "metres and radians are added with unit weights: the efficiencies depend on the unit of length. "
+        f"Give --weights, for example 'twist={twist};reciprocal', where a radian counts as the arc at "
+        f"{length:g} m"
+    )
+
+
+def tell(texts: Iterable[str]) -> None:
+    """Warnings as lines on stderr."""
+    for text in texts:
+        click.echo(f"warning: {text}", err=True)
+
+
 @contextmanager
 def warnings_on_stderr(*, quiet: bool = False) -> Iterator[None]:
     """Warnings as single lines on stderr, each once.
 
     Args:
-        quiet: Leave out those of vincula itself, where the page shows them in their place.
+        quiet: Leave out doubt and mixed units, which the command tells itself (`said_warnings`).
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("default")
@@ -40,5 +75,4 @@ def warnings_on_stderr(*, quiet: bool = False) -> Iterator[None]:
                 for warning in caught
                 if not (quiet and issubclass(warning.category, own))
             ]
-            for text in dict.fromkeys(texts):
-                click.echo(f"warning: {text}", err=True)
+            tell(dict.fromkeys(texts))
