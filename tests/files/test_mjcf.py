@@ -174,7 +174,8 @@ def test_limits() -> None:
     robot, _ = read(
         model(
             '<body name="a"><joint name="j" range="-90 45"/>'
-            '<body name="b"><joint name="k" actuatorfrcrange="-3 2"/><body name="c"><joint name="l"/></body></body></body>',
+            '<body name="b"><joint name="k" actuatorfrcrange="-3 2"/>'
+            '<body name="c"><joint name="l"/></body></body></body>',
             '<actuator><motor joint="j" forcerange="-2 3" gear="-10"/><motor joint="k"/></actuator>',
         )
     )
