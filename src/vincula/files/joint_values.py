@@ -101,6 +101,6 @@ class JointValues:
         if joint.type == "screw" or axes & turning or allowed:
             return
         raise ModelError(
-            f"{name} is {angle:g}: angles are in radians here and this is more than a full turn; say that it "
-            "is in degrees (units: {angle: deg} in the file, 30deg on the command line) or take full turns off"
+            f"{name} is {angle:g}: angles are in radians here and this is more than a full turn; say that "
+            "it is in degrees (`units: {angle: deg}` in a file, 30deg in a text) or take full turns off"
         )

@@ -190,7 +190,7 @@ class _Builder:
 
     def _whole(self, sketch: Sketch) -> Mechanism:
         drawing, base = sketch.drawing, sketch.base
-        precision = self._scale.precision(base.precision if base else Precision())
+        precision = self._scale.precision(base.precision if base else Precision(), self._entry.precision)
         parts = {
             "bodies": drawing.bodies,
             "joints": drawing.joints,
@@ -198,6 +198,7 @@ class _Builder:
             "frames": drawing.frames,
             "precision": precision,
             "name": self._name,
+            "notes": (*(base.notes if base else ()), *self._entry.notes),
         }
         try:
             if base is not None:

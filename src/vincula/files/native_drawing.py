@@ -155,5 +155,14 @@ def _add_closure(sketch: Sketch, index: int) -> None:
     if first.body == second.body:
         sketch.problem(["closures", index, "frames"], f"both frames are on body {shown(first.body)}")
         return
-    joint = Joint(entry.name, entry.type, first.body, second.body, first.pose, second.pose, closure=True)
+    joint = Joint(
+        entry.name,
+        entry.type,
+        first.body,
+        second.body,
+        first.pose,
+        second.pose,
+        closure=True,
+        cut=entry.cut,
+    )
     sketch.drawing.joints += (joint,)

@@ -7,10 +7,11 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from vincula.errors import ModelError
+from vincula.errors import ModelError, listing
 from vincula.files.joint_values import JointValues
 from vincula.files.native_parts import coupling, drive, numbers_of, position
 from vincula.files.problems import shown
+from vincula.files.schema import DriveEntry, NamedMotorEntry
 from vincula.files.sketch import Sketch
 from vincula.files.tree import Location
 from vincula.files.units import Scale
@@ -37,7 +38,7 @@ def with_couplings(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
             couplings.append(coupling(entry, sketch.scale, linear))
     drives: list[Drive] = []
     for index, motor in enumerate(sketch.entry.motors or ()):
-        if isinstance(motor, str):
+        if not isinstance(motor, DriveEntry):
             continue
         if motor.name in {*linear, *mechanism.joint, *(d.name for d in mechanism.drives)}:
             sketch.problem(
@@ -68,9 +69,14 @@ def with_locks_and_motors(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
     if entry.motors is None:
         return mechanism
     active: dict[str, int] = {}
+    motors = dict(mechanism.motors)
     for index, motor in enumerate(entry.motors):
-        name = motor if isinstance(motor, str) else motor.name
-        found = sketch.attempt(["motors", index], partial(mechanism.resolve_motors, [name]))
+        if isinstance(motor, NamedMotorEntry):
+            found = sketch.attempt(["motors", index, "axis"], partial(_one_axis, mechanism, motor.axis))
+            motors.update({motor.name: found[0]} if found else {})
+        else:
+            name = motor if isinstance(motor, str) else motor.name
+            found = sketch.attempt(["motors", index], partial(mechanism.resolve_motors, [name]))
         for axis in found or ():
             if axis in active:
                 sketch.problem(["motors", index], f"{shown(axis)} is a motor already: motors[{active[axis]}]")
@@ -80,7 +86,14 @@ def with_locks_and_motors(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
                 )
             else:
                 active[axis] = index
-    return replace(mechanism, active=tuple(active))
+    return replace(mechanism, active=tuple(active), motors=motors)
+
+
+def _one_axis(mechanism: Mechanism, name: str) -> tuple[str, ...]:
+    found = mechanism.resolve_axes([name])
+    if len(found) != 1:
+        raise ModelError(f"{shown(name)} has {len(found)} axes, expected one of {listing(found)}")
+    return found
 
 
 def _axes(sketch: Sketch, mechanism: Mechanism, location: Location, name: str) -> bool:

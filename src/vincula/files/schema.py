@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, RootModel, Tag
 
-from vincula.files.schema_values import Name, Number, Placed, Strict
+from vincula.files.schema_values import Name, Number, Placed, Strict, Text
 
 
 class UnitsEntry(Strict):
@@ -151,11 +151,15 @@ class ContactEntry(Strict):
 
 
 class ClosureEntry(Strict):
-    """A loop joint between two named frames; its axis is z of the first."""
+    """A loop joint between two named frames; its axis is z of the first.
+
+    With `cut: contact` it stands for its constraint rows only and has no axes of its own.
+    """
 
     name: Name
     type: Literal["revolute", "prismatic", "cylindrical", "spherical", "planar", "fixed"]
     frames: Annotated[list[Name], Field(min_length=2, max_length=2)]
+    cut: Literal["kept", "contact"] | None = None
 
 
 class CouplingEntry(Strict):
@@ -175,12 +179,24 @@ class DriveEntry(Strict):
     drives: Annotated[dict[Name, Number], Field(min_length=1)]
 
 
+class NamedMotorEntry(Strict):
+    """A motor with a name of its own on one axis."""
+
+    name: Name
+    axis: Name
+
+
 def _motor_form(value: Any) -> str:
-    return "table" if isinstance(value, dict) else "axis"
+    if isinstance(value, dict):
+        return "named" if "axis" in value else "combining"
+    return "axis"
 
 
 MotorEntry = Annotated[
-    Annotated[Name, Tag("axis")] | Annotated[DriveEntry, Tag("table")], Discriminator(_motor_form)
+    Annotated[Name, Tag("axis")]
+    | Annotated[DriveEntry, Tag("combining")]
+    | Annotated[NamedMotorEntry, Tag("named")],
+    Discriminator(_motor_form),
 ]
 
 
@@ -256,6 +272,13 @@ Weighting = Annotated[
 ]
 
 
+class PrecisionEntry(Strict):
+    """How roughly the numbers were known that this file was converted from; its own digits count too."""
+
+    length: Number | None = None
+    angle: Number | None = None
+
+
 class NativeFile(Strict):
     """A vincula native file, version 1."""
 
@@ -277,6 +300,8 @@ class NativeFile(Strict):
     weights: Weighting | None = None
     configuration: dict[Name, Values] = Field(default_factory=dict)
     keyframes: dict[Name, dict[Name, Values]] = Field(default_factory=dict)
+    precision: PrecisionEntry | None = None
+    notes: list[Text] = Field(default_factory=list)
 
 
 class ConfigurationFile(RootModel[dict[Name, Values]]):

@@ -33,6 +33,9 @@ LARGEST: Final = 1e30
 """Numbers above this are refused: their squares would overflow in every formula."""
 
 
+_LONGEST_TEXT: Final = 2_000
+
+
 @dataclass(frozen=True, slots=True)
 class Context:
     """What values are checked against.
@@ -109,6 +112,15 @@ def read_name(value: Any, info: ValidationInfo) -> str:
     return value
 
 
+def read_text(value: Any, info: ValidationInfo) -> str:
+    """A sentence: printable, of a few lines at most."""
+    if not isinstance(value, str):
+        raise refusal(shown(value), "a text")
+    if len(value) > _LONGEST_TEXT or not value.isprintable():
+        raise refusal(shown(value), f"a printable text of at most {_LONGEST_TEXT} characters")
+    return value
+
+
 def _right_count(values: list[Measured], info: ValidationInfo) -> list[Measured]:
     count = _context(info).translations
     if count is not None and len(values) != count:
@@ -129,6 +141,9 @@ Number = Annotated[Measured, PlainValidator(read_number), WithJsonSchema(_NUMBER
 
 Name = Annotated[str, PlainValidator(read_name), WithJsonSchema({"type": "string", "minLength": 1})]
 """A printable, non-empty name."""
+
+Text = Annotated[str, PlainValidator(read_text), WithJsonSchema({"type": "string"})]
+"""A printable sentence."""
 
 Vector = Annotated[list[Number], Field(min_length=2, max_length=3), AfterValidator(_right_count)]
 """Coordinates: two in the plane, three in space."""

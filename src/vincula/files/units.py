@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from vincula.files.expressions import Measured
 from vincula.mechanism.parts import Precision
 from vincula.spatial.units import UNITS
+
+if TYPE_CHECKING:
+    from vincula.files.schema import PrecisionEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +80,13 @@ class Scale:
             self._angle = max(self._angle, max(number.half_unit for number in numbers) / size)
         return values
 
-    def precision(self, base: Precision) -> Precision:
-        """What is known about the digits of this file and of the one it builds upon."""
+    def precision(self, base: Precision, declared: PrecisionEntry | None = None) -> Precision:
+        """The digits of this file, of the one it builds upon, and what it says of them itself."""
+        length = declared.length.value if declared and declared.length else 0.0
+        angle = declared.angle.value if declared and declared.angle else 0.0
         return Precision(
-            digits_length=max(self._length, base.digits_length),
-            digits_angle=max(self._angle, base.digits_angle),
+            digits_length=max(self._length, base.digits_length, self.units.metres(length)),
+            digits_angle=max(self._angle, base.digits_angle, self.units.radians(angle)),
             tolerance_length=base.tolerance_length,
             tolerance_angle=base.tolerance_angle,
         )
