@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import string
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,58 +14,21 @@ from matplotlib.ticker import MaxNLocator
 from vincula.arrays import Matrix
 from vincula.spatial.space import PLANAR
 from vincula.view import layout, style
-from vincula.view.drawables import Role, Scene
+from vincula.view.drawables import Role
 from vincula.view.layout import Grid, Window
 from vincula.view.planar import PlanarPanel
-from vincula.view.shapes import EllipsoidShape
+from vincula.view.sheet import Panel, Sheet
 from vincula.view.spatial import SpatialPanel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+FLATTEST = 0.35
+"""Smallest side of a spatial box over its largest, so that ticks have room."""
+
 SPATIAL_HEIGHT = 0.86
 """Height of a spatial panel over its width."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Panel:
-    """One panel of a figure.
-
-    Attributes:
-        scene: The mechanism.
-        shape: The ellipsoid at its reference point; None for the mechanism alone.
-        header: A line above the panel's title that names its row; empty for none.
-    """
-
-    scene: Scene
-    shape: EllipsoidShape | None
-    header: str = ""
-
-    @property
-    def title(self) -> tuple[str, ...]:
-        """Efficiencies and unbounded direction, a line each."""
-        if self.shape is None:
-            return ()
-        lines = (style.efficiencies_text(self.shape), style.unbounded_text(self.shape))
-        return tuple(line for line in lines if line)
-
-
-@dataclass(frozen=True, slots=True)
-class Sheet:
-    """How a figure is laid out.
-
-    Attributes:
-        width: Width of the figure [inch].
-        columns: Panels side by side.
-        names: Whether joints are named.
-        direction: Elevation and azimuth of the view of a spatial mechanism [deg].
-    """
-
-    width: float
-    columns: int
-    names: bool
-    direction: tuple[float, float]
 
 
 def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
@@ -78,7 +40,7 @@ def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
     panel_width = layout.panel_width(sheet.width, sheet.columns, left)
     seen = layout.window(points, panel_width) if planar else None
     handles = _handles(panels)
-    foot_notes = layout.wrapped(style.note(shapes, planar), sheet.width - 0.2)
+    foot_notes = layout.wrapped(f"{style.note(shapes, planar)} {sheet.remark}".strip(), sheet.width - 0.2)
     legend_rows = -(-len(handles) // _legend_columns(handles, sheet.width))
     grid = Grid(
         columns=sheet.columns,
@@ -89,7 +51,7 @@ def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
             _title_room(panels[i : i + sheet.columns]) for i in range(0, len(panels), sheet.columns)
         ),
         left=left,
-        below=layout.BELOW_PANELS if planar else 0.04,
+        below=layout.BELOW_PANELS if planar else 0.12,
         between=layout.GAP,
         head=0.04,
         foot=0.06 + layout.LEGEND_LINE * legend_rows + layout.NOTE_LINE * len(foot_notes),
@@ -134,6 +96,7 @@ def _draw_panel(
         axes = figure.add_axes(box, projection="3d", proj_type="ortho")
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         half = 0.5 * np.ptp(points, axis=0) + 0.04 * panel.scene.size
+        half = np.maximum(half, FLATTEST * half.max())
         SpatialPanel(axes, centre - half, centre + half, panel.scene.size, sheet.direction).draw(
             panel.scene, panel.shape, names=named
         )
@@ -154,9 +117,9 @@ def _planar_axes(axes: Axes, first_column: bool, last_row: bool) -> None:
 
 
 def _spatial_axes(axes: Axes3D) -> None:
-    axes.set_xlabel("x [m]", labelpad=-9)
-    axes.set_ylabel("y [m]", labelpad=-9)
-    axes.set_zlabel("z [m]", labelpad=-9)
+    axes.set_xlabel("x [m]", labelpad=-7.5)
+    axes.set_ylabel("y [m]", labelpad=-7.5)
+    axes.set_zlabel("z [m]", labelpad=-7.5)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         prune = "lower" if axis is axes.yaxis else None
         axis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10], prune=prune))

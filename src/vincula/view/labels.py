@@ -44,7 +44,7 @@ def place_labels(
                 direction = np.array([np.cos(angle), np.sin(angle)])
                 centre = anchor + direction * (distance + float(np.abs(direction) @ half))
                 score = 3.0 * _room(centre, half, taken) + 0.6 * _room(centre, half, lines) - 0.12 * distance
-                score -= 2.0 * _strays(centre, anchor, others)
+                score -= 6.0 * _strays(centre, anchor, others)
                 if score > best_score + 1e-9:
                     best, best_score = centre, score
         centres.append(best)

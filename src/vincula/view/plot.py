@@ -20,12 +20,12 @@ from vincula.mechanism.parts import _All
 from vincula.spatial.space import PLANAR
 from vincula.view import layout, shapes, style
 from vincula.view.scene import scene
+from vincula.view.sheet import Panel, Sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from vincula.view.drawables import Scene
-    from vincula.view.figures import Panel
     from vincula.weights import Weights
 
 Values = Mapping[str, float | Sequence[float] | Vector]
@@ -39,6 +39,8 @@ FORMATS = (".svg", ".png", ".pdf")
 
 NAMED_UP_TO = 12
 """Mechanisms with more joints are drawn without names unless they are asked for."""
+
+DOUBT = "A rank is doubtful here: another reading may have other infinite or zero efficiencies."
 
 _FUNCTIONS = {
     "kinematic": manipulability.kinematic_ellipsoid,
@@ -83,9 +85,9 @@ def plot_mechanism(
     kinds = _kinds(mechanism, ellipsoids)
     planar = mechanism.space is PLANAR
     paper = width if width is not None else (layout.COLUMN if planar or len(kinds) < 2 else layout.PAGE)
-    panels = _panels([mechanism], q, kinds, weights, [""])
+    panels, remark = _panels([mechanism], q, kinds, weights, [""])
     columns = layout.columns_for(len(panels), 2 if paper < 5.0 or not planar else 4)
-    return _figure(panels, paper, columns, _named(mechanism, names), direction)
+    return _figure(panels, Sheet(paper, columns, _named(mechanism, names), direction, remark))
 
 
 def plot_comparison(
@@ -125,8 +127,8 @@ def plot_comparison(
         raise ModelError("a comparison needs at least one choice of motors")
     kinds = _kinds(mechanism, ellipsoids)
     variants = [mechanism.with_active(motors) for motors in designs]
-    panels = _panels(variants, q, kinds, weights, [motors_text(variant) for variant in variants])
-    return _figure(panels, width, max(1, len(kinds)), _named(mechanism, names), direction)
+    panels, remark = _panels(variants, q, kinds, weights, [motors_text(variant) for variant in variants])
+    return _figure(panels, Sheet(width, max(1, len(kinds)), _named(mechanism, names), direction, remark))
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
@@ -180,13 +182,11 @@ def _panels(
     kinds: Sequence[Kind],
     weights: Weights | None,
     headers: Sequence[str],
-) -> list[Panel]:
-    """Panels row by row; every kind of ellipsoid has one scale."""
-    from vincula.view.figures import Panel
-
+) -> tuple[list[Panel], str]:
+    """Panels row by row, and a remark where ranks are in doubt; every kind of ellipsoid has one scale."""
     scenes = [scene(variant, q) for variant in variants]
     if not kinds:
-        return [Panel(one, None, header) for one, header in zip(scenes, headers, strict=True)]
+        return [Panel(one, None, header) for one, header in zip(scenes, headers, strict=True)], ""
     models = [variant.linearize(q) for variant in variants]
     found = [[_FUNCTIONS[kind](model, weights) for kind in kinds] for model in models]
     space = variants[0].space
@@ -195,11 +195,13 @@ def _panels(
         shapes.nice_scale([shapes.translations(row[k], space) for row in found], 0.5 * size)
         for k in range(len(kinds))
     ]
-    return [
+    doubtful = any(model.ledger.status == "doubtful" for model in models)
+    panels = [
         Panel(one, _shape(row[k], one, scales[k]), header if k == 0 else "")
         for one, row, header in zip(scenes, found, headers, strict=True)
         for k in range(len(kinds))
     ]
+    return panels, DOUBT if doubtful else ""
 
 
 def _shape(ellipsoid: Ellipsoid, where: Scene, scale: float) -> shapes.EllipsoidShape:
@@ -209,13 +211,11 @@ def _shape(ellipsoid: Ellipsoid, where: Scene, scale: float) -> shapes.Ellipsoid
     return shapes.shape(ellipsoid, where.space, where.reference, scale, reach)
 
 
-def _figure(
-    panels: Sequence[Panel], width: float, columns: int, names: bool, direction: tuple[float, float]
-) -> Figure:
-    from vincula.view.figures import Sheet, figure_of
+def _figure(panels: Sequence[Panel], sheet: Sheet) -> Figure:
+    from vincula.view.figures import figure_of
 
     with _settings():
-        return figure_of(panels, Sheet(width, columns, names, direction))
+        return figure_of(panels, sheet)
 
 
 def _need_matplotlib() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,9 @@ from vincula.view.shapes import EllipsoidShape, silhouette
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+FILLED = np.array([0.92, 0.90])
+"""Share of the square in the middle of a panel that the box fills, in width and height."""
 
 MARKER = {"motor": 5.0, "driven": 4.4, "passive": 4.4, "locked": 4.4}
 """Diameter of a joint symbol [points]."""
@@ -39,7 +43,16 @@ class SpatialPanel:
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_zlim(low[2], high[2])
-        axes.set_box_aspect(tuple(high - low), zoom=1.1)
+        axes.set_box_aspect(tuple(high - low))
+        self._fit(low, high)
+
+    def _fit(self, low: Vector, high: Vector) -> None:
+        """Zoom so that the box fills the panel, with room for ticks and labels."""
+        self.axes.apply_aspect()
+        corners = np.array(list(itertools.product(*zip(low, high, strict=True))))
+        pixels = self.axes.transData.transform(self._projected(corners))
+        spread = np.ptp(self.axes.transAxes.inverted().transform(pixels), axis=0)
+        self.axes.set_box_aspect(tuple(high - low), zoom=float((FILLED / spread).min()))
 
     def draw(self, scene: Scene, shape: EllipsoidShape | None, *, names: bool) -> None:
         """Ground, mechanism, ellipsoid, and the reference point above them all."""
