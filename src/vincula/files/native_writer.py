@@ -102,13 +102,13 @@ class _Writer:
         return content
 
     def _precision(self) -> dict[str, float]:
-        """How roughly the source was typed; digits of whole doubles say nothing."""
+        """How roughly the source is known; stated always, since the digits here are those of doubles."""
         digits = self._mechanism.precision
         known = (
             ("length", digits.digits_length, self._mechanism.length),
             ("angle", digits.digits_angle, 1.0),
         )
-        return {key: value for key, value, size in known if value > _DOUBLE * size}
+        return {key: value if value > _DOUBLE * size else 0.0 for key, value, size in known}
 
     def _joint(self, joint: Joint) -> dict[str, Any]:
         first = self._poses[joint.first] @ joint.frame_on_first

@@ -273,7 +273,7 @@ Weighting = Annotated[
 
 
 class PrecisionEntry(Strict):
-    """How roughly the numbers were known that this file was converted from; its own digits count too."""
+    """How far lengths and angles may be off; without it, half a unit of the digits they are typed with."""
 
     length: Number | None = None
     angle: Number | None = None

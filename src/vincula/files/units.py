@@ -81,12 +81,19 @@ class Scale:
         return values
 
     def precision(self, base: Precision, declared: PrecisionEntry | None = None) -> Precision:
-        """The digits of this file, of the one it builds upon, and what it says of them itself."""
-        length = declared.length.value if declared and declared.length else 0.0
-        angle = declared.angle.value if declared and declared.angle else 0.0
+        """How roughly numbers are known: by their digits, or by what the file says instead of them.
+
+        Args:
+            base: What is known of the file below this one.
+            declared: What the file says.
+        """
+        length, angle = self._length, self._angle
+        if declared is not None:
+            length = self.units.metres(declared.length.value) if declared.length else 0.0
+            angle = self.units.radians(declared.angle.value) if declared.angle else 0.0
         return Precision(
-            digits_length=max(self._length, base.digits_length, self.units.metres(length)),
-            digits_angle=max(self._angle, base.digits_angle, self.units.radians(angle)),
+            digits_length=max(length, base.digits_length),
+            digits_angle=max(angle, base.digits_angle),
             tolerance_length=base.tolerance_length,
             tolerance_angle=base.tolerance_angle,
         )
