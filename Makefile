@@ -49,9 +49,8 @@ demo: $(VENV)/.demo-ready
 	$(BIN)/vincula analyze example:five-bar --active o2,o4
 	$(BIN)/vincula analyze example:five-bar --active all
 	$(BIN)/vincula compare example:five-bar --active o1,o5 --active o2,o4 --active all
-	$(BIN)/vincula plot example:five-bar -o $(DEMO)/five-bar.svg
-	$(BIN)/vincula plot example:five-bar -o $(DEMO)/five-bar.png
-	@echo "figures: $(DEMO)/five-bar.svg $(DEMO)/five-bar.png"
+	$(BIN)/vincula plot example:five-bar --active o1,o5 --active o2,o4 --active all -o $(DEMO)/five-bar.svg
+	$(BIN)/vincula plot example:five-bar --active o1,o5 --active o2,o4 --active all -o $(DEMO)/five-bar.png
 
 lint: $(VENV)/.dev-ready
 	$(BIN)/ruff check .
