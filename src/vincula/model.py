@@ -206,7 +206,7 @@ class LinearModel:
 
 
 def _factors(linear: Sequence[bool], factor: float) -> Vector:
-    return frozen(np.where(np.array(linear, dtype=bool), factor, 1.0))
+    return frozen(np.array([factor if flag else 1.0 for flag in linear], dtype=float))
 
 
 def _refuse_duplicates(kind: str, names: Sequence[str]) -> None:

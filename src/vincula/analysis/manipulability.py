@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -150,8 +150,7 @@ def ellipsoid_of_kind(
         listed = tuple(c for c in listed if c != "zero")
     else:
         found = _found(kind, model, weights, task, motor)
-    ellipsoid = _assembled(model, kind, listed, found, task, motor)
-    return replace(ellipsoid, weights_chosen=weights.explicit, viewpoint=viewpoint, convention=convention)
+    return _assembled(model, kind, listed, found, task, motor, weights.explicit, viewpoint, convention)
 
 
 def _found(kind: Kind, model: LinearModel, weights: Weights, task: Metric, motor: Metric) -> Spectrum:
@@ -215,31 +214,27 @@ def _assembled(
     found: Spectrum,
     task: Metric,
     motor: Metric,
+    chosen: bool,
+    viewpoint: Viewpoint,
+    convention: Convention,
 ) -> Ellipsoid:
     """An ellipsoid with the listed classes of a spectrum."""
-    count = {
-        "infinite": found.infinite.shape[1],
-        "finite": len(found.ratios),
-        "zero": found.zero.shape[1],
-        "undefined": found.undefined,
-    }
-    values = {"infinite": [np.inf], "zero": [0.0], "undefined": [np.nan]}
-    sides: dict[str, tuple[Matrix | None, Matrix | None]] = {
-        "infinite": (found.infinite, None),
-        "finite": (found.task, found.motor),
-        "zero": (None, found.zero),
-        "undefined": (None, None),
-    }
     efficiencies: list[float] = []
     classes: list[Class] = []
     task_side: list[Vector | None] = []
     motor_side: list[Vector | None] = []
-    for name in listed:
-        if count[name]:
-            classes += [name] * count[name]
-            efficiencies += (found.ratios**2).tolist() if name == "finite" else values[name] * count[name]
-            task_side += _columns(sides[name][0], count[name])
-            motor_side += _columns(sides[name][1], count[name])
+
+    def add(name: Class, values: list[float], tasks: Matrix | None, motors: Matrix | None) -> None:
+        if values and name in listed:
+            classes.extend([name] * len(values))
+            efficiencies.extend(values)
+            task_side.extend([None] * len(values) if tasks is None else frozen(tasks.T.copy()))
+            motor_side.extend([None] * len(values) if motors is None else frozen(motors.T.copy()))
+
+    add("infinite", [np.inf] * found.infinite.shape[1], found.infinite, None)
+    add("finite", (found.ratios**2).tolist(), found.task, found.motor)
+    add("zero", [0.0] * found.zero.shape[1], None, found.zero)
+    add("undefined", [np.nan] * found.undefined, None, None)
     components, units = _components(model, kind)
     lines = found.infinite if "infinite" in listed else found.infinite[:, :0]
     axes, doubt = found.task * found.ratios, model.ledger.subspace_doubt
@@ -256,6 +251,9 @@ def _assembled(
         task_weight=task,
         motor_weight=motor,
         set=VectorSet(components, units, axes, _unit(lines), doubt),
+        weights_chosen=chosen,
+        viewpoint=viewpoint,
+        convention=convention,
     )
 
 
@@ -272,12 +270,6 @@ def _components(model: LinearModel, kind: Kind) -> tuple[tuple[str, ...], tuple[
         names = tuple(row.name for row in model.rows)
         return names, tuple("N" if row.linear else "N m" for row in model.rows)
     return model.wrench_components, model.wrench_units
-
-
-def _columns(columns: Matrix | None, count: int) -> list[Vector | None]:
-    if columns is None:
-        return [None] * count
-    return list(frozen(columns.T.copy()))
 
 
 def _unit(columns: Matrix) -> Matrix:

@@ -166,6 +166,8 @@ def _grading(sizes: Vector) -> float:
 
 def _sectioned(relation: Relation, task: Metric, motor: Metric) -> Relation:
     """The part of the relation that vanishes on every component required to be zero."""
+    if not (task.required_zero.shape[1] or motor.required_zero.shape[1]):
+        return relation
     conditions = np.vstack(
         [
             _unit_rows(metric.required_zero.T * factor) @ block
@@ -175,8 +177,6 @@ def _sectioned(relation: Relation, task: Metric, motor: Metric) -> Relation:
             )
         ]
     )
-    if not conditions.shape[0]:
-        return relation
     rank = decide_rank(
         conditions, name="required zeros", scale=1.0, uncertainty={"subspace": relation.doubt}
     ).rank
@@ -191,7 +191,8 @@ def _split(relation: Relation, task: Metric, motor: Metric) -> _Parts:
     """Infinite, finite, zero and undefined parts, decided on unweighted orthonormal bases."""
     k = relation.task.shape[1]
     counted = task.definite and motor.definite and relation.infinite >= 0
-    if counted and relation.infinite == 0 and relation.zero == 0:
+    room = min(relation.task.shape[0], relation.motor.shape[0])
+    if counted and relation.infinite == 0 and relation.zero == 0 and k <= room:
         return _Parts(relation.task[:, :0], relation.task, relation.motor, relation.motor[:, :0], 0)
     basis = np.eye(k)
     if not relation.orthonormal:
@@ -199,7 +200,9 @@ def _split(relation: Relation, task: Metric, motor: Metric) -> _Parts:
     rows_task = _row_space(task, relation.task_factor) @ relation.task
     rows_motor = _row_space(motor, relation.motor_factor) @ relation.motor
     if counted:
-        infinite, zero, undefined = relation.infinite, min(relation.zero, k - relation.infinite), 0
+        # Contradictory rank decisions (flagged by the counts) must still leave bases of a kind.
+        infinite = min(max(relation.infinite, k - relation.motor.shape[0]), k)
+        zero, undefined = min(max(relation.zero, k - relation.task.shape[0]), k - infinite), 0
     else:
         rows = rows_task @ basis, rows_motor @ basis
         infinite, zero, undefined = _decided_counts(relation, task, motor, *rows)

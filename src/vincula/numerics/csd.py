@@ -17,6 +17,9 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.numerics.lapack import eliminated, identity, jacobi_svd, qr_rows_pivoted
 
+SMALLER = 0.7071067811865476
+"""Below 45 degrees' sine a length is the smaller one of its pair."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Angles:
@@ -43,10 +46,10 @@ class Angles:
 def angles_of_pair(task: Matrix, motor: Matrix) -> Angles:
     """The cosine-sine decomposition of two blocks, each of full column rank k.
 
-    Cosines and sines come from separate one-sided Jacobi decompositions, so each small one is
-    accurate by itself.  Directions: where s <= c, motor directions are singular vectors of the
-    second block and task directions their well-conditioned images; where c < s the other way round,
-    inside the complement.  So both sets are orthonormal and paired, also inside clusters.
+    Small sines come from a one-sided Jacobi decomposition of the second block, small cosines from one
+    of the first, so each is accurate by itself; the large partner of a small one is the length of its
+    well-conditioned image, and so is its direction.  Both sets of directions are orthonormal and
+    paired, also inside clusters.
 
     Args:
         task: First block, p x k with p >= k, weighted; rows may differ in size by many orders.
@@ -57,20 +60,34 @@ def angles_of_pair(task: Matrix, motor: Matrix) -> Angles:
         return Angles(np.empty(0), np.empty(0), np.empty((p, 0)), np.empty((motor.shape[0], 0)))
     stack = qr_rows_pivoted(np.vstack([task, motor]), k)
     upper, lower = stack[:p], stack[p:]
-    task_left, cosines, task_right = jacobi_svd(upper)
-    motor_left, sines, motor_right = jacobi_svd(lower)
-    sines = sines[::-1]
-    leading = int(np.count_nonzero(sines <= cosines))
-    if leading == 0:
-        return Angles(cosines, sines, task_left, _normalised(lower @ task_right))
-    # Right vectors for the smallest sines come last; take them in the order of the ratios.
-    first, rest = motor_right[:, ::-1][:, :leading], motor_right[:, : k - leading]
-    task_side, motor_side = _normalised(upper @ first), motor_left[:, ::-1][:, :leading]
-    if leading < k:
-        task_rest, _, turn = jacobi_svd(upper @ rest)
-        task_side = np.hstack([task_side, task_rest])
-        motor_side = np.hstack([motor_side, _normalised(lower @ rest @ turn)])
-    return Angles(cosines, sines, task_side, motor_side)
+    if np.vdot(upper, upper) > 0.5 * k:
+        motor_side, sines, task_side, cosines = _from_small(lower, upper)
+    else:
+        task_side, cosines, motor_side, sines = _from_small(upper, lower)
+    order = np.argsort(sines / cosines, kind="stable")
+    return Angles(cosines[order], sines[order], task_side[:, order], motor_side[:, order])
+
+
+def _from_small(small: Matrix, large: Matrix) -> tuple[Matrix, Vector, Matrix, Vector]:
+    """Directions and lengths in two blocks of an orthonormal stack, most lengths in `small` being small.
+
+    Where the length in `small` is the smaller one, it and its direction come from that block; the
+    rest from the other block, inside the complement.
+    """
+    left, lengths, right = jacobi_svd(small)
+    trusted = lengths <= SMALLER
+    other, partner = _normalised(large @ right[:, trusted])
+    if trusted.all():
+        return left, lengths, other, partner
+    rest = right[:, ~trusted]
+    other_rest, partner_rest, turn = jacobi_svd(large @ rest)
+    left_rest, lengths_rest = _normalised(small @ (rest @ turn))
+    return (
+        np.hstack([left[:, trusted], left_rest]),
+        np.concatenate([lengths[trusted], lengths_rest]),
+        np.hstack([other, other_rest]),
+        np.concatenate([partner, partner_rest]),
+    )
 
 
 def deflated(block: Matrix, fixed: Matrix) -> tuple[Matrix, Matrix, Matrix]:
@@ -94,5 +111,6 @@ def deflated(block: Matrix, fixed: Matrix) -> tuple[Matrix, Matrix, Matrix]:
     return turned[j:], factor[:, :j], factor[:, j:]
 
 
-def _normalised(columns: Matrix) -> Matrix:
-    return np.asarray(columns / np.sqrt(np.einsum("ij,ij->j", columns, columns)))
+def _normalised(columns: Matrix) -> tuple[Matrix, Vector]:
+    lengths = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+    return columns / lengths, lengths

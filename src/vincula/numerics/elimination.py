@@ -11,14 +11,16 @@ bounds the smallest singular value of [J_p S] from below, at a fraction of the c
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
 
 import numpy as np
 
-from vincula.arrays import Matrix
-from vincula.numerics.lapack import inverse_of_triangle, qr_applied, singular_values
+from vincula.arrays import Matrix, Vector
+from vincula.numerics.lapack import inverse_of_triangle, qr_applied, singular_values, svd
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Elimination:
     """J_p eliminated from further columns.
 
@@ -47,7 +49,12 @@ class Elimination:
         inverse = inverse_of_triangle(triangle)
         if inverse is None:
             return None
-        return Elimination(float(np.linalg.norm(inverse)), inverse @ turned[:n], turned[n:])
+        return Elimination(sqrt(float(np.vdot(inverse, inverse))), inverse @ turned[:n], turned[n:])
+
+    @cached_property
+    def reduced_svd(self) -> tuple[Matrix, Vector, Matrix]:
+        """Full decomposition of C; its right vectors are motions and equilibria of the relation."""
+        return svd(self.reduced)
 
     def smallest_singular_value(self, columns: slice) -> float:
         """A lower bound of the smallest singular value of J_p with some of the other columns.
@@ -56,11 +63,11 @@ class Elimination:
         """
         squares = self.inverse**2
         reduced = self.reduced[:, columns]
-        if reduced.shape[1]:
-            values = singular_values(reduced)
-            lowest = float(values[-1]) if len(values) else 1.0
+        if 0 not in reduced.shape:
+            whole = reduced.shape == self.reduced.shape
+            lowest = float((self.reduced_svd[1] if whole else singular_values(reduced))[-1])
             if lowest == 0.0:
                 return 0.0
-            coupling = float(np.linalg.norm(self.coupling[:, columns]))
-            squares += (1.0 + coupling**2) / lowest**2 if len(values) else 0.0
-        return float("inf") if squares == 0.0 else 1.0 / float(np.sqrt(squares))
+            coupling = self.coupling[:, columns]
+            squares += (1.0 + float(np.vdot(coupling, coupling))) / lowest**2
+        return 1.0 / sqrt(squares) if squares else float("inf")

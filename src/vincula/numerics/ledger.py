@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,11 +18,11 @@ from vincula.numerics.counts import Ranks, SummaryCounts, TwelveCounts
 from vincula.numerics.elimination import Elimination
 from vincula.numerics.lapack import singular_values
 from vincula.numerics.rank import SAFETY, RankDecision, Status, decide_rank, rounding_unit
+from vincula.numerics.subspaces import Subspaces
 
 if TYPE_CHECKING:
     from vincula.labels import ScaledMatrices, Uncertainty
     from vincula.model import LinearModel
-    from vincula.numerics.subspaces import Subspaces
 
 MatrixName = Literal[
     "active", "passive", "member", "active+passive", "active+member", "passive+member", "all", "triple"
@@ -50,6 +51,7 @@ class RankLedger:
     curvature: float = 1.0
     _decisions: dict[str, RankDecision] = field(default_factory=dict, repr=False)
     _bounds: dict[str, float] = field(default_factory=dict, repr=False)
+    _bases: dict[str, tuple[Matrix, ...]] = field(default_factory=dict, repr=False)
 
     @staticmethod
     def of_model(model: LinearModel) -> RankLedger:
@@ -103,15 +105,11 @@ class RankLedger:
         Where full rank is proved without singular values, they are not computed: the decision would
         be the same, and certain.
         """
-        if name in self._decisions or not self._proved_full(name):
-            return self.decision(name).rank
-        return min(self._rows, self.matrix_width(name))
-
-    def matrix_width(self, name: MatrixName) -> int:
-        """Number of columns of one of the seven stacked matrices."""
-        widths = dict(zip(("active", "passive", "member"), self._widths, strict=True))
-        parts = ("active", "passive", "member") if name == "all" else name.split("+")
-        return sum(widths[part] for part in parts)
+        if name not in self._decisions and self._proved_full(name):
+            n_a, n_p, n_o = self._widths
+            width = {"passive": 0, "active+passive": n_a, "passive+member": n_o, "all": n_a + n_o}[name]
+            return min(self._rows, n_p + width)
+        return self.decision(name).rank
 
     @cached_property
     def scale(self) -> float:
@@ -135,23 +133,21 @@ class RankLedger:
         rho = self.curvature * self.residual
         if rho > 0.0:
             sigma = decide_rank(matrix, scale=self.scale, uncertainty=parts, values=values).kept
-            parts["closure"] = rho / sigma if rho < 0.5 * sigma * sigma else (2.0 * rho) ** 0.5
+            parts["closure"] = _closure_error(rho, sigma)
         return parts
 
     @cached_property
     def subspace_doubt(self) -> float:
         """Relative error to expect of kernels and ranges: the cutoff over the smallest kept value."""
         if "all" not in self._decisions and self._proved_full("all"):
-            return min(1.0, self._proof_cutoff / self._bound("all"))
+            return min(1.0, self._proof_cutoff("all") / self._bound("all"))
         full = self.decision("all")
         return min(1.0, full.cutoff / full.kept)
 
-    @cached_property
+    @property
     def subspaces(self) -> Subspaces:
         """Kernels and ranges that belong to these ranks."""
-        from vincula.numerics.subspaces import Subspaces
-
-        return Subspaces(self)
+        return Subspaces(self, self._bases)
 
     @cached_property
     def summary(self) -> SummaryCounts:
@@ -218,7 +214,7 @@ class RankLedger:
         """Whether full rank is certain from a bound on the smallest singular value."""
         if name not in _SUMMARY or self.elimination is None:
             return False
-        return self._bound(name) > 2.0 * SAFETY * self._proof_cutoff
+        return self._bound(name) > 2.0 * SAFETY * self._proof_cutoff(name)
 
     def _bound(self, name: MatrixName) -> float:
         """Lower bound of the smallest singular value of one of the four summary matrices."""
@@ -229,14 +225,29 @@ class RankLedger:
             self._bounds[name] = self.elimination.smallest_singular_value(columns)
         return self._bounds[name]
 
+    def _proof_cutoff(self, name: MatrixName) -> float:
+        """An upper bound of the cutoff of a summary matrix, without singular values."""
+        rho, relative = self.curvature * self.residual, self._proof_unit
+        if rho > 0.0:
+            relative += _closure_error(rho, self._bound(name))
+        return self._proof_scale * relative
+
     @cached_property
-    def _proof_cutoff(self) -> float:
-        """An upper bound of the cutoff of every summary matrix, without singular values."""
-        relative = rounding_unit(self._rows, sum(self._widths)) + self.digits + self.tolerance
-        if self.residual > 0.0:
-            rho, sigma = self.residual, self._bound("all")
-            relative += rho / sigma if rho < 0.5 * sigma * sigma else (2.0 * rho) ** 0.5
-        return float(np.linalg.norm(self._all)) * relative
+    def _proof_unit(self) -> float:
+        return rounding_unit(self._rows, sum(self._widths)) + self.digits + self.tolerance
+
+    @cached_property
+    def _proof_scale(self) -> float:
+        s = self.scaled
+        return (
+            float(np.vdot(s.active, s.active) + np.vdot(s.passive, s.passive) + np.vdot(s.member, s.member))
+            ** 0.5
+        )
+
+
+def _closure_error(rho: float, sigma: float) -> float:
+    """How far the true configuration may be: Kantorovich's h = rho / sigma^2 < 1/2, or a fold."""
+    return rho / sigma if rho < 0.5 * sigma * sigma else (2.0 * rho) ** 0.5
 
 
 _SUMMARY: tuple[MatrixName, ...] = ("passive", "active+passive", "passive+member", "all")

@@ -88,6 +88,8 @@ def identity_metric(size: int) -> Metric:
 def metric_of_diagonal(weights: Vector) -> Metric:
     """The metric of non-negative weights, one a component; zero means not weighted."""
     size = len(weights)
+    if (weights == 1.0).all():
+        return identity_metric(size)
     counted = np.flatnonzero(weights > 0.0)
     roots = np.sqrt(weights[counted])
     factor = np.zeros((len(counted), size))

@@ -7,7 +7,6 @@ singular value.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,36 +73,44 @@ class Subspaces:
     """Kernels and ranges of the scaled matrices of one model, computed on demand and only once.
 
     Coordinates are scaled; columns are ordered (q_a, q_p, u), and the member part is -G^T as in (1).
+    A view: what was computed is kept by the ledger, which does not point back here.
     """
 
     ledger: RankLedger
-    _kernels: dict[str, Matrix] = field(default_factory=dict, repr=False)
-    _left_kernels: dict[str, Matrix] = field(default_factory=dict, repr=False)
+    kept: dict[str, tuple[Matrix, ...]] = field(repr=False)
 
     def kernel(self, name: MatrixName) -> Matrix:
         """Orthonormal kernel of one of the eight matrices."""
-        if name not in self._kernels:
-            self._kernels[name] = kernel(self.ledger.matrix(name), self.ledger.rank(name))
-        return self._kernels[name]
+        key = f"kernel of {name}"
+        if key not in self.kept:
+            self.kept[key] = (kernel(self.ledger.matrix(name), self.ledger.rank(name)),)
+        return self.kept[key][0]
 
     def left_kernel(self, name: MatrixName) -> Matrix:
         """Orthonormal left kernel of one of the eight matrices."""
-        if name not in self._left_kernels:
-            self._left_kernels[name] = left_kernel(self.ledger.matrix(name), self.ledger.rank(name))
-        return self._left_kernels[name]
+        key = f"left kernel of {name}"
+        if key not in self.kept:
+            self.kept[key] = (left_kernel(self.ledger.matrix(name), self.ledger.rank(name)),)
+        return self.kept[key][0]
 
-    @cached_property
+    @property
     def motions_and_equilibria(self) -> tuple[Matrix, Matrix]:
         """Orthonormal bases of M = {(q_a, u)} and of its complement F = {(tau, w)}: theory page, 4.
 
         Both come from one orthogonal matrix, so that tau.q_a + w.u = 0 to rounding.
         """
+        if "relation" not in self.kept:
+            self.kept["relation"] = self._relation()
+        motions, equilibria = self.kept["relation"]
+        return motions, equilibria
+
+    def _relation(self) -> tuple[Matrix, Matrix]:
         ledger, elimination = self.ledger, self.ledger.elimination
         if elimination is not None and ledger.rank("passive") == len(elimination.coupling):
-            reduced = elimination.reduced
+            right = elimination.reduced_svd[2]
         else:
             z = self.left_kernel("passive")
-            reduced = z.T @ np.hstack([ledger.matrix("active"), ledger.matrix("member")])
-        rank = ledger.rank("all") - ledger.rank("passive")
-        right = svd(reduced)[2]
+            right = svd(z.T @ np.hstack([ledger.matrix("active"), ledger.matrix("member")]))[2]
+        # Contradictory decisions (flagged by the counts) must not make a negative dimension.
+        rank = max(0, ledger.rank("all") - ledger.rank("passive"))
         return right[:, rank:], right[:, :rank]
