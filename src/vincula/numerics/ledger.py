@@ -238,11 +238,8 @@ class RankLedger:
 
     @cached_property
     def _proof_scale(self) -> float:
-        s = self.scaled
-        return (
-            float(np.vdot(s.active, s.active) + np.vdot(s.passive, s.passive) + np.vdot(s.member, s.member))
-            ** 0.5
-        )
+        blocks = (self.scaled.active, self.scaled.passive, self.scaled.member)
+        return sqrt(sum(float(np.vdot(block, block)) for block in blocks))
 
 
 def _closure_error(rho: float, sigma: float) -> float:
