@@ -15,7 +15,7 @@ from vincula.files.limits import Limits
 from vincula.files.mjcf_document import Document
 from vincula.files.mjcf_size import check_size
 from vincula.files.names import name_problem
-from vincula.files.problems import Problems, shown
+from vincula.files.problems import Place, Problems, shown
 from vincula.files.xmltree import Element
 
 PLACING: Final = {
@@ -58,6 +58,15 @@ _REFUSED: Final = {
 }
 
 
+_KINDS_BY_SECTION: Final = {
+    "tendon": "tendon",
+    "actuator": "motor",
+    "equality": "equality",
+    "keyframe": "key",
+}
+_KINDS_BY_TAG: Final = {"body": "body", "joint": "joint", "freejoint": "joint", "site": "site"}
+
+
 def check_document(document: Document, limits: Limits) -> None:
     """Refuse a document with numbers, names or sizes that cannot be used.
 
@@ -69,6 +78,7 @@ def check_document(document: Document, limits: Limits) -> None:
     for part in document.all_documents():
         in_radians = angle_unit(part) == "radian"
         _check_tendons(part.root, problems)
+        _check_duplicates(part.root, problems)
         for element in part.root.walk():
             _check_refused(element, problems)
             _check_name(element, problems, limits)
@@ -113,6 +123,24 @@ def _check_tendons(root: Element, problems: Problems) -> None:
                 problems.add(
                     element.place, f"{what}, so its length is no sum of joint values", unsupported=True
                 )
+
+
+def _check_duplicates(root: Element, problems: Problems) -> None:
+    """Two parts of a kind with one name; names of what is copied are completed by MuJoCo."""
+    first: dict[tuple[str, str], Element] = {}
+    waiting = list(reversed(root.children))
+    while waiting:
+        element = waiting.pop()
+        if element.tag not in ("default", "replicate", "asset"):
+            waiting.extend(reversed(element.children))
+        section = element.parent.tag if element.parent is not None else ""
+        kind = _KINDS_BY_SECTION.get(section) or _KINDS_BY_TAG.get(element.tag, "")
+        if not kind or not element.name:
+            continue
+        other = first.setdefault((kind, element.name), element)
+        if other is not element:
+            where = Place(other.file, other.line, other.column).text()
+            problems.add(element.place, f"another {kind} has this name, at {where}")
 
 
 def _check_name(element: Element, problems: Problems, limits: Limits) -> None:

@@ -12,7 +12,7 @@ import mujoco
 
 from vincula.files.mjcf_document import Document
 from vincula.files.mjcf_text import Written, write_bare, write_complete
-from vincula.files.mjcf_words import suggestion_for
+from vincula.files.mjcf_words import engine_flags, suggestion_for
 from vincula.files.problems import Problems
 
 _LINE: Final = re.compile(r"line (\d+)")
@@ -26,7 +26,7 @@ def compile_document(document: Document) -> tuple[Any, list[str]]:
     Raises:
         FileError: MuJoCo refuses the document; its first error is told with the place.
     """
-    complete, bare = write_complete(document), write_bare(document)
+    complete, bare = write_complete(document), write_bare(document, engine_flags())
     with _warnings_caught() as caught:
         _spec(document, complete)
         spec = _spec(document, bare)

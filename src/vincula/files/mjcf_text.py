@@ -3,11 +3,13 @@
 Every element begins on a line of its own, numbered through all documents, so that a line in one of
 MuJoCo's messages leads back to the element wherever it was included from.  Two versions are
 written: a complete one, for MuJoCo to check against its schema, and a bare one to compile: bodies,
-joints, sites, loops and motors, without geoms and assets, every body with the inertia of a unit.
+joints, sites, loops and motors, without geoms and assets, every body and joint with unit inertia, and
+without forces, because MuJoCo steps every model once that it compiles.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Final
 from xml.sax.saxutils import quoteattr
@@ -17,6 +19,8 @@ from vincula.files.xmltree import Element
 
 _UNIT_INERTIA: Final = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 _NO_SIMULATION: Final = '<compiler><lengthrange mode="none"/></compiler>'
+
+_OPTIONS_KEPT: Final = frozenset(("actuatorgroupdisable",))
 
 _LEFT_OUT: Final = frozenset(
     ("size", "visual", "statistic", "custom", "deformable", "contact", "sensor", "extension")
@@ -57,16 +61,23 @@ def write_complete(document: Document) -> Written:
     return _Writer(bare=False).written(document)
 
 
-def write_bare(document: Document) -> Written:
-    """What makes the mechanism, for compiling."""
-    return _Writer(bare=True).written(document)
+def write_bare(document: Document, disabled: Iterable[str]) -> Written:
+    """What makes the mechanism, for compiling.
+
+    Args:
+        document: The document.
+        disabled: Flags of MuJoCo's engine to switch off.
+    """
+    return _Writer(bare=True, disabled=disabled).written(document)
 
 
 class _Writer:
     """Writes documents one after the other; lines are numbered on through all of them."""
 
-    def __init__(self, *, bare: bool) -> None:
+    def __init__(self, *, bare: bool, disabled: Iterable[str] = ()) -> None:
         self._bare = bare
+        flags = "".join(f' {flag}="disable"' for flag in disabled)
+        self._settings = f"{_NO_SIMULATION}<option><flag{flags}/></option>"
         self._line = 1
         self._files: dict[str, str] = {}
         self._elements: dict[int, Element] = {}
@@ -120,7 +131,7 @@ class _Writer:
             return ""
         if element.tag == "body":
             return _UNIT_INERTIA
-        return _NO_SIMULATION if element.parent is None else ""
+        return self._settings if element.parent is None else ""
 
     def _attributes(self, element: Element) -> dict[str, str]:
         attributes = dict(element.attributes)
@@ -128,6 +139,14 @@ class _Writer:
             attributes["file"] = self._names[id(element)]
         if self._bare and element.tag == "compiler":
             attributes = {name: value for name, value in attributes.items() if name not in _COMPILER_LEFT_OUT}
+        if self._bare and element.tag == "option":
+            attributes = {name: value for name, value in attributes.items() if name in _OPTIONS_KEPT}
         if self._bare and element.tag in ("joint", "freejoint"):
             attributes.pop("align", None)
+        if self._bare and element.tag == "joint" and _in_tree(element):
+            attributes["armature"] = "1"
         return attributes
+
+
+def _in_tree(element: Element) -> bool:
+    return element.parent is not None and element.parent.tag in _TREE - {"spatial", "composite"}

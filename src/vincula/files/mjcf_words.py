@@ -1,4 +1,4 @@
-"""The words that MuJoCo's error messages miss: what the writer of the file may have meant."""
+"""Words of MuJoCo's own schema: its flags, and what the writer of an unknown word may have meant."""
 
 from __future__ import annotations
 
@@ -35,6 +35,11 @@ def suggestion_for(message: str, element: Element | None, document: Document) ->
     else:
         return "", []
     return word, difflib.get_close_matches(word[:100], choices[:1000], n=1)
+
+
+def engine_flags() -> list[str]:
+    """The flags by which this version of MuJoCo switches forces off."""
+    return sorted(_schema()["flag"] & {"constraint", "gravity", "actuation", "passive", "spring", "damper"})
 
 
 @cache
