@@ -58,6 +58,24 @@ def displaced(rng: np.random.Generator, mechanism: Mechanism, far: float) -> dic
     return start
 
 
+def holdable_motors(rng: np.random.Generator, mechanism: Mechanism) -> dict[str, float]:
+    """Home values of as many scalar axes as the mechanism has freedoms, which fix all that they can.
+
+    Axes are taken in random order as long as each of them can still move when the earlier ones stand.
+    """
+    model = mechanism.with_reference(mechanism.bodies[0].name).linearize()
+    jacobian = np.hstack([model.jacobian_passive, -model.grasp.T])
+    names = [column.name for column in model.passives]
+    kernel = np.linalg.svd(jacobian)[2][np.linalg.matrix_rank(jacobian, tol=1e-9) :].T
+    motors: dict[str, float] = {}
+    for name in rng.permutation([n for n in names if len(mechanism.home.get(n, ())) == 1]):
+        row = kernel[names.index(name)]
+        if kernel.shape[1] and np.linalg.norm(row) > 0.05:
+            motors[str(name)] = float(mechanism.home[name][0])
+            kernel = kernel @ np.linalg.svd(row[None, :])[2][1:].T
+    return motors
+
+
 def _ends(rng: np.random.Generator, bodies: list[str]) -> tuple[str, str]:
     if len(bodies) < 3:
         return "ground", "ground"
