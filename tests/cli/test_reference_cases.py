@@ -1,4 +1,4 @@
-"""The reference cases of the real MJCF robots, through the command line alone.
+"""The reference cases of the real MJCF and URDF robots, through the command line alone.
 
 Grasp cases go through a native overlay (`base:`) that adds object, contacts and reference member;
 the others through `--reference`, `--active`, `--lock` and `--at`.
@@ -30,6 +30,7 @@ CASES = (
     "stewart_sdf_generic_8_actuated",
     "stewart_sdf_home",
 )
+URDF_CASES = ("gepetto_5bar_linkage", "gepetto_5bar_linkage_iso3d", "gepetto_robot_delta")
 CONTACT = {"hard": "hard-finger", "soft": "soft-finger", "complete": "complete"}
 
 
@@ -64,16 +65,16 @@ def arguments(case: dict[str, Any], model: Path, folder: Path) -> list[str]:
         options += ["--lock", ",".join(case["locked"])]
     if "contacts" in case:
         return ["analyze", str(overlay(case, model, folder)), *options, "--json"]
-    values = case["configuration"]["by_joint"]
+    values = case["configuration"].get("by_joint", case["configuration"])
     at = folder / "at.json"
-    at.write_text(json.dumps({name: value[0] for name, value in values.items()}), encoding="utf-8")
+    plain = {name: value[0] if isinstance(value, list) else value for name, value in values.items()}
+    at.write_text(json.dumps(plain), encoding="utf-8")
     body = case["reference_member"]["body"]
     return ["analyze", str(model), "--reference", body, "--at", str(at), *options, "--json"]
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", (*CASES, *URDF_CASES))
 def test_agrees_with_the_reference_case(name: str, shared: Path, tmp_path: Path) -> None:
-    pytest.importorskip("mujoco")
     case = json.loads((shared / "cases" / name / "expected.json").read_text(encoding="utf-8"))
     result = CliRunner().invoke(cli, arguments(case, shared / case["model_file"], tmp_path))
     assert result.exit_code == 0, result.output

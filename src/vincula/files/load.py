@@ -140,14 +140,17 @@ class _Loader:
             from vincula.files.mjcf import load_mjcf
 
             return Loaded(*load_mjcf(source, self._limits))
-        raise FileError(f"{source.file}: {_other_xml(root)}; read are {listing(FORMATS)}")
+        if root == "robot":
+            from vincula.files.urdf import load_urdf
+
+            return Loaded(*load_urdf(source, self._limits))
+        raise FileError(f"{source.file}: {_other_xml(root)}; files that can be read: {listing(FORMATS)}")
 
 
-FORMATS: Final = ("vincula native (YAML or JSON)", "MJCF")
+FORMATS: Final = ("vincula native (YAML or JSON)", "MJCF", "URDF")
 """The formats that can be read."""
 
 _OTHER_XML: Final = {
-    "robot": "got a URDF file",
     "sdf": "got an SDF file",
     "COLLADA": "got a mesh (COLLADA)",
     "html": "got a web page",

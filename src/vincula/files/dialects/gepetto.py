@@ -1,0 +1,161 @@
+"""Gepetto side files: `robot.yaml` beside `robot.urdf`, with the loops and the motors.
+
+`closed_loop` lists pairs of frames that coincide, `type` how (6d: position and orientation, 3d:
+position), `name_mot` the joints with motors, `joint_name` and `joint_type` joints of another type than
+the URDF file says (SPHERICAL).  A frame is a link, or a joint, which stands for its child link.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+from vincula.files.limits import Limits
+from vincula.files.problems import shown
+from vincula.files.report import LoadReport
+from vincula.files.robot_graph import DraftJoint
+from vincula.files.source import Source
+from vincula.files.tree import Document, Location
+from vincula.files.xmlvalues import XmlValues
+from vincula.files.yamltree import read_yaml
+from vincula.spatial.poses import Pose
+
+if TYPE_CHECKING:
+    from vincula.files.robot_graph import RobotDraft
+
+KEYS: Final = ("closed_loop", "type", "name_mot", "joint_name", "joint_type")
+LOOPS: Final = {"6d": "fixed", "3d": "spherical"}
+"""Kinds of loops, and the joint that stands for them; both give rows only, as in Pinocchio."""
+JOINTS: Final = {"SPHERICAL": "spherical"}
+"""Joint types that a side file may put in place of the URDF file's."""
+
+_SIGN: Final = re.compile(r"^\s*closed_loop\s*:", re.MULTILINE)
+
+
+class GepettoFile:
+    """One side file.
+
+    Args:
+        source: Its text.
+        limits: How much it may hold.
+    """
+
+    def __init__(self, source: Source, limits: Limits) -> None:
+        self._source, self._limits = source, limits
+
+    @staticmethod
+    def recognises(source: Source) -> bool:
+        """Whether a text looks like a side file: it has a key `closed_loop`."""
+        return _SIGN.search(source.text) is not None
+
+    def read(self, draft: RobotDraft, _values: XmlValues, report: LoadReport) -> None:
+        """Add loops, motors and joint types to the draft.
+
+        Raises:
+            FileError: The file is not as described above; every problem with its place.
+        """
+        _SideFileReader(read_yaml(self._source, self._limits), draft, report).read()
+
+
+class _SideFileReader:
+    def __init__(self, document: Document, draft: RobotDraft, report: LoadReport) -> None:
+        self._document, self._draft, self._report = document, draft, report
+        self._problems = document.problems
+        self._frames = {link: link for link in draft.links}
+        self._frames |= {j.name: j.child for j in draft.joints if j.name not in draft.links}
+
+    def read(self) -> None:
+        tree = self._document.plain()
+        if not isinstance(tree, dict):
+            self._problems.add(self._document.place(()), got="no mapping", expected=f"keys {', '.join(KEYS)}")
+            self._problems.refuse()
+        for key in tree:
+            if key not in KEYS:
+                self._problems.add(
+                    self._document.place((key,), at_key=True),
+                    f"the key {shown(key)} is not understood",
+                    name=str(key),
+                    choices=KEYS,
+                )
+        lists = {key: self._list(tree, key) for key in KEYS}
+        self._retype(lists["joint_name"], lists["joint_type"])
+        self._loops(lists["closed_loop"], lists["type"])
+        self._motors(lists["name_mot"], "name_mot" in tree)
+        self._problems.refuse_if_any()
+
+    def _list(self, tree: dict[str, Any], key: str) -> list[Any]:
+        value = tree.get(key)
+        if value is None:
+            return []
+        if isinstance(value, list):
+            return value
+        self._add((key,), got=shown(value), expected="a list")
+        return []
+
+    def _add(self, location: Location, message: str = "", **details: Any) -> None:
+        self._problems.add(self._document.place(location), message, **details)
+
+    def _frame(self, name: object, location: Location) -> str:
+        """The link that a frame name stands for; empty after a problem."""
+        if isinstance(name, str) and name in self._frames:
+            return self._frames[name]
+        self._add(location, got=f"frame {shown(name)}", name=str(name), choices=self._frames)
+        return ""
+
+    def _loops(self, pairs: list[Any], kinds: list[Any]) -> None:
+        if len(kinds) != len(pairs):
+            self._add(("type",), got=f"{len(kinds)} types", expected=f"{len(pairs)}, one a closed_loop")
+            return
+        for i, (pair, kind) in enumerate(zip(pairs, kinds, strict=True)):
+            if kind not in LOOPS:
+                self._add(
+                    ("type", i), got=shown(kind), expected=" or ".join(LOOPS), name=str(kind), choices=LOOPS
+                )
+                continue
+            if not isinstance(pair, list) or len(pair) != 2:
+                self._add(("closed_loop", i), got=shown(pair), expected="two frames")
+                continue
+            links = [self._frame(name, ("closed_loop", i, k)) for k, name in enumerate(pair)]
+            if not all(links):
+                continue
+            self._draft.joints.append(
+                DraftJoint(
+                    name=f"loop:{pair[0]}-{pair[1]}",
+                    type=LOOPS[kind],
+                    parent=links[0],
+                    child=links[1],
+                    on_parent=Pose.identity(3),
+                    on_child=Pose.identity(3),
+                    closure=True,
+                    rows_only=True,
+                    place=self._document.place(("closed_loop", i)),
+                )
+            )
+            self._report.used("closed_loop", f"{pair[0]}-{pair[1]}", f"{kind}: {LOOPS[kind]} closure")
+
+    def _retype(self, names: list[Any], types: list[Any]) -> None:
+        if len(names) != len(types):
+            self._add(("joint_type",), got=f"{len(types)} types", expected=f"{len(names)}, one a joint_name")
+            return
+        joints = {joint.name: i for i, joint in enumerate(self._draft.joints)}
+        for i, (name, kind) in enumerate(zip(names, types, strict=True)):
+            if kind not in JOINTS:
+                self._add(("joint_type", i), got=shown(kind), expected=" or ".join(JOINTS), choices=JOINTS)
+            elif name not in joints:
+                self._add(("joint_name", i), got=f"joint {shown(name)}", name=str(name), choices=joints)
+            else:
+                at = joints[name]
+                old = self._draft.joints[at]
+                self._draft.joints[at] = replace(old, type=JOINTS[kind], axis=None, limits=())
+                self._report.repaired("joint", name, f"{JOINTS[kind]}, as the side file says, not {old.type}")
+
+    def _motors(self, names: list[Any], given: bool) -> None:
+        joints = {j.name for j in self._draft.joints if not j.closure and j.type != "fixed"}
+        for i, name in enumerate(names):
+            if name not in joints:
+                self._add(("name_mot", i), got=f"joint {shown(name)}", name=str(name), choices=sorted(joints))
+        if given:
+            self._draft.motors = {str(name): str(name) for name in names}
+            for name in self._draft.motors:
+                self._report.used("motor", name)

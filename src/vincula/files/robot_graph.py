@@ -1,0 +1,250 @@
+"""From links and joints as robot files give them to a mechanism: one draft for URDF and SDF.
+
+A link may be child of several joints: the first that reaches it from the root places it, the others
+close loops.  Everything is placed at zero joint values, as those formats define.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vincula.arrays import Vector
+from vincula.errors import ModelError
+from vincula.files.problems import Place, Problems, shown
+from vincula.mechanism.joint_types import joint_type
+from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.parts import GROUND, Body, Coupling, Drive, Frame, Joint, Limits, Precision
+from vincula.spatial.poses import Pose, frame_with_z
+from vincula.spatial.space import SPATIAL
+
+WORLD = "world"
+"""What robot files call the fixed surroundings."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DraftJoint:
+    """A joint of a robot file.
+
+    Attributes:
+        name: Its name.
+        type: Name of the joint type here (revolute for continuous, free for floating ...).
+        parent: Parent link.
+        child: Child link.
+        on_parent: Pose of the joint frame in the parent link.
+        on_child: Pose of the joint frame in the child link.
+        axis: Unit axis in the joint frame (first axis of a universal joint, normal of a planar one).
+        second_axis: Second axis of a universal joint in the joint frame.
+        lead: Advance of a screw a turn [m].
+        limits: Limits by axis.
+        closure: True for what only closes a loop and has no value in the file.
+        rows_only: True for a closure that stands for its rows alone (no joint of its own).
+        place: Where it is written.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    on_parent: Pose
+    on_child: Pose
+    axis: Vector | None = None
+    second_axis: Vector | None = None
+    lead: float = 0.0
+    limits: tuple[Limits, ...] = ()
+    closure: bool = False
+    rows_only: bool = False
+    place: Place = field(default_factory=lambda: Place(""))
+
+    def resolved(self, closure: bool, names: dict[str, str]) -> Joint:
+        """The joint of the mechanism."""
+        turn = np.eye(3)
+        second = np.array([1.0, 0.0, 0.0])
+        if self.axis is not None:
+            turn = frame_with_z(self.axis, self.second_axis)
+        if self.second_axis is not None:
+            second = turn.T @ self.second_axis
+        aligned = Pose(turn, np.zeros(3))
+        home = () if closure else tuple(float(v) for v in joint_type(self.type, SPATIAL).zero)
+        return Joint(
+            name=self.name,
+            type=self.type,
+            first=names[self.parent],
+            second=names[self.child],
+            frame_on_first=self.on_parent @ aligned,
+            frame_on_second=self.on_child @ aligned,
+            home=home,
+            lead=self.lead,
+            second_axis=second,
+            limits=self.limits,
+            closure=closure,
+            cut="contact" if self.rows_only else None,
+        )
+
+
+@dataclass
+class RobotDraft:
+    """What a reader of a robot file has found so far.
+
+    Attributes:
+        file: The file, for messages.
+        problems: Where problems go.
+        name: Name of the robot.
+        links: Links by name, with their places.
+        joints: Joints, loops included.
+        frames: Named frames on links.
+        couplings: Couplings.
+        drives: Motors that drive combinations of joints.
+        motors: Joint or drive by motor name; None while the file names no motor at all.
+        passive: Joints marked as passive.
+        digits_length: Largest half unit of a typed length [m].
+        digits_angle: Largest half unit of a typed angle or direction [rad].
+        notes: Facts that the reader of a result must know.
+    """
+
+    file: str
+    problems: Problems
+    name: str = "robot"
+    links: dict[str, Place] = field(default_factory=dict)
+    joints: list[DraftJoint] = field(default_factory=list)
+    frames: list[Frame] = field(default_factory=list)
+    couplings: list[Coupling] = field(default_factory=list)
+    drives: list[Drive] = field(default_factory=list)
+    motors: dict[str, str] | None = None
+    passive: set[str] = field(default_factory=set)
+    digits_length: float = 0.0
+    digits_angle: float = 0.0
+    notes: list[str] = field(default_factory=list)
+
+    def link_choices(self) -> list[str]:
+        """Names that a joint may connect."""
+        return list(self.links)
+
+    def has_link(self, name: str, place: Place, *, what: str) -> bool:
+        """Whether a link exists; adds a problem if not."""
+        if name in self.links:
+            return True
+        self.problems.add(
+            place, f"{what} names the link {shown(name)}, which does not exist", name=name, choices=self.links
+        )
+        return False
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the draft.
+
+        Raises:
+            FileError: No root, several roots, islands, or anything else a mechanism cannot be.
+        """
+        self._check_names()
+        self.problems.refuse_if_any()
+        root = self._root()
+        tree = self._tree(root)
+        self.problems.refuse_if_any()
+        names = {link: link for link in self.links} | {root: GROUND}
+        poses = self._poses(root, tree)
+        in_tree = {id(joint) for joint in tree}
+        joints = [j.resolved(j.closure or id(j) not in in_tree, names) for j in self.joints]
+        frames = [Frame(f.name, names.get(f.body, f.body), f.pose) for f in self.frames]
+        if root != WORLD:
+            frames.append(Frame(root, GROUND, Pose.identity(3)))
+        motors = self._motors()
+        try:
+            mechanism = Mechanism(
+                space=SPATIAL,
+                bodies=tuple(Body(link, poses[link]) for link in self.links if link != root),
+                joints=tuple(joints),
+                couplings=tuple(self.couplings),
+                drives=tuple(self.drives),
+                frames=tuple(frames),
+                name=self.name,
+                precision=Precision(self.digits_length, self.digits_angle),
+                notes=tuple(self.notes),
+                motors=motors,
+            )
+            return mechanism.with_active(list(dict.fromkeys(motors.values())))
+        except ModelError as error:
+            self.problems.add(Place(self.file), str(error))
+            self.problems.refuse()
+
+    def _check_names(self) -> None:
+        seen: dict[str, Place] = {}
+        for joint in self.joints:
+            if joint.name in seen:
+                self.problems.add(
+                    joint.place,
+                    f"the joint name {shown(joint.name)} is used twice (line {seen[joint.name].line})",
+                )
+            seen[joint.name] = joint.place
+            if joint.parent == joint.child:
+                self.problems.add(
+                    joint.place, f"joint {shown(joint.name)} connects {shown(joint.parent)} to itself"
+                )
+
+    def _tree_joints(self) -> list[DraftJoint]:
+        return [j for j in self.joints if not j.closure]
+
+    def _root(self) -> str:
+        """The link that is nobody's child."""
+        if not self.links:
+            self.problems.add(Place(self.file), "there is no link")
+            self.problems.refuse()
+        children = {j.child for j in self._tree_joints()}
+        roots = [link for link in self.links if link not in children]
+        if WORLD in roots:
+            return WORLD
+        if not roots:
+            self.problems.add(
+                Place(self.file), "every link is the child of a joint: no link can be the ground"
+            )
+            self.problems.refuse()
+        if len(roots) > 1:
+            self._refuse_roots(roots)
+        return roots[0]
+
+    def _refuse_roots(self, roots: Sequence[str]) -> None:
+        for link in roots[1:]:
+            self.problems.add(
+                self.links[link],
+                f"link {shown(link)} is connected to nothing above it, and so is {shown(roots[0])}: "
+                "a robot has one root link",
+            )
+        self.problems.refuse()
+
+    def _tree(self, root: str) -> list[DraftJoint]:
+        """Joints that place a link, in the order of the file, breadth first."""
+        below: dict[str, list[DraftJoint]] = {}
+        for joint in self._tree_joints():
+            below.setdefault(joint.parent, []).append(joint)
+        reached, tree, queue = {root}, [], [root]
+        for link in queue:
+            for joint in below.get(link, ()):
+                if joint.child not in reached:
+                    reached.add(joint.child)
+                    tree.append(joint)
+                    queue.append(joint.child)
+        for link, place in self.links.items():
+            if link not in reached:
+                self.problems.add(place, f"no chain of joints leads from {shown(root)} to link {shown(link)}")
+        return tree
+
+    def _poses(self, root: str, tree: Sequence[DraftJoint]) -> dict[str, Pose]:
+        poses = {root: Pose.identity(3)}
+        for joint in tree:
+            poses[joint.child] = poses[joint.parent] @ joint.on_parent @ joint.on_child.inverse()
+        return poses
+
+    def _motors(self) -> dict[str, str]:
+        """Motors by name; where the file names none, every joint that nothing marks as passive."""
+        if self.motors is not None:
+            return self.motors
+        followers = {axis for coupling in self.couplings for axis in list(coupling.rates)[:1]}
+        moving = [
+            j.name
+            for j in self.joints
+            if not j.closure and j.type not in ("fixed", "free") and j.name not in self.passive | followers
+        ]
+        if moving and not self.passive:
+            self.notes.append("the file marks no motors: every joint that follows no other counts as one")
+        return {name: name for name in moving}

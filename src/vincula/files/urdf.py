@@ -1,0 +1,260 @@
+"""URDF files (1.0 to 1.2) as mechanisms: links, joints, mimic, limits, transmissions, and their loops.
+
+URDF itself knows trees only; loops come from dialects, one file each in `dialects`, inside the file or
+beside it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from vincula.files.dialects import loop_readers, reader_of_element
+from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.problems import Place, Problems, shown
+from vincula.files.report import LoadReport
+from vincula.files.robot_graph import DraftJoint, RobotDraft
+from vincula.files.source import Source, open_source
+from vincula.files.urdf_motors import read_transmission
+from vincula.files.xmltree import Element, parse_xml
+from vincula.files.xmlvalues import TypedDigits, XmlValues
+from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.parts import Coupling
+from vincula.mechanism.parts import Limits as JointLimits
+from vincula.spatial.poses import Pose, rotation_from_quaternion_wxyz
+
+TYPES: Final = {
+    "revolute": "revolute",
+    "continuous": "revolute",
+    "prismatic": "prismatic",
+    "fixed": "fixed",
+    "floating": "free",
+    "planar": "planar",
+}
+"""Joint types of URDF and ours."""
+
+_WITHOUT_KINEMATICS: Final = {
+    "material": "colours are no part of a mechanism",
+    "sensor": "no part of a mechanism",
+    "gripper": "no part of a mechanism",
+}
+_LINK_PARTS: Final = {
+    "inertial": "masses play no part in kinematics and statics",
+    "visual": "shapes are not read",
+    "collision": "shapes are not read; contacts are never inferred from them",
+    "self_collision_checking": "no part of a mechanism",
+    "contact": "simulator settings",
+    "sensor": "no part of a mechanism",
+}
+_JOINT_PARTS: Final = {
+    "dynamics": "friction and damping play no part in kinematics and statics",
+    "joint_properties": "friction and damping play no part in kinematics and statics",
+    "calibration": "no part of a mechanism",
+    "safety_controller": "no part of a mechanism",
+    "gazebo": "simulator settings",
+    "hardwareInterface": "no part of a mechanism",
+}
+_READ_IN_JOINT: Final = ("parent", "child", "origin", "axis", "limit", "mimic")
+
+
+def load_urdf(
+    path: str | os.PathLike[str] | Source,
+    limits: Limits = DEFAULT_LIMITS,
+    *,
+    beside: Sequence[str | os.PathLike[str]] = (),
+) -> tuple[Mechanism, LoadReport]:
+    """The mechanism of a URDF file, at zero joint values.
+
+    The root link is the ground.  Loops, motors and passive joints are taken from the file and from
+    side files.
+
+    Args:
+        path: The file, or its text where it is open already.
+        limits: How much the files may hold.
+        beside: Side files (loops, SRDF); by default those found beside the file.
+
+    Returns:
+        The mechanism, and the report of everything used and ignored.
+
+    Raises:
+        FileError: The file cannot be read, or is no mechanism; with file, line, column and element.
+        UnsupportedFeatureError: The file holds a loop or a part that cannot be represented.
+    """
+    source = path if isinstance(path, Source) else open_source(path, limits)
+    root = parse_xml(source, limits)
+    reader = UrdfReader(source, limits)
+    reader.read(root)
+    for loops in loop_readers(source, beside, limits):
+        loops.read(reader.draft, reader.values, reader.report)
+    mechanism = reader.finish()
+    return mechanism, reader.report
+
+
+class UrdfReader:
+    """Reads the elements of one URDF document into a draft."""
+
+    def __init__(self, source: Source, limits: Limits) -> None:
+        self.limits = limits
+        self.problems = Problems(source.file)
+        self.digits = TypedDigits()
+        self.values = XmlValues(self.problems, self.digits)
+        self.report = LoadReport(source.file, "URDF")
+        self.draft = RobotDraft(source.file, self.problems)
+
+    def read(self, root: Element) -> None:
+        """Read the whole document."""
+        if root.tag != "robot":
+            self.problems.add(root.place, got=f"<{root.tag}>", expected="<robot>")
+            self.problems.refuse()
+        self.draft.name = root.name or "robot"
+        later: list[Element] = []
+        for element in root.children:
+            if element.tag == "link":
+                self._link(element)
+            elif element.tag in ("joint", "transmission"):
+                later.append(element)
+            elif element.tag in _WITHOUT_KINEMATICS:
+                self.report.ignored(element.tag, element.name, _WITHOUT_KINEMATICS[element.tag])
+            else:
+                later.append(element)
+        for element in later:
+            if element.tag == "joint":
+                self._joint(element)
+        for element in later:
+            if element.tag == "transmission":
+                read_transmission(element, self.draft, self.values, self.report)
+            elif element.tag != "joint":
+                reader_of_element(element)(element, self.draft, self.values, self.report)
+
+    def finish(self) -> Mechanism:
+        """The mechanism of what was read."""
+        if len(self.draft.links) > self.limits.bodies or len(self.draft.joints) > self.limits.joints:
+            self.problems.add(
+                Place(self.draft.file), f"more than {self.limits.bodies} links or {self.limits.joints} joints"
+            )
+        self.draft.digits_length, self.draft.digits_angle = self.digits.length, self.digits.angle
+        mechanism = self.draft.mechanism()
+        for note in self.draft.notes:
+            self.report.note(note)
+        return mechanism
+
+    def _link(self, element: Element) -> None:
+        name = self.values.name(element)
+        if not name:
+            return
+        if name in self.draft.links:
+            self.problems.add(
+                element.place,
+                f"the link name {shown(name)} is used twice (line {self.draft.links[name].line})",
+            )
+            return
+        self.draft.links[name] = element.place
+        self.report.used("link", name)
+        for part in element.children:
+            if part.tag in _LINK_PARTS:
+                self.report.ignored(part.tag, name, _LINK_PARTS[part.tag])
+            else:
+                self.problems.add(
+                    part.place,
+                    f"<{part.tag}> is not understood in <link>",
+                    name=part.tag,
+                    choices=_LINK_PARTS,
+                )
+
+    def _joint(self, element: Element) -> None:
+        name = self.values.name(element)
+        written = element.attributes.get("type", "")
+        if written not in TYPES:
+            self.problems.add(
+                element.place, got=f"joint type {shown(written)}", expected="a joint type", name=written,
+                choices=TYPES,
+            )  # fmt: skip
+            return
+        self.values.only(element, (*_READ_IN_JOINT, *_JOINT_PARTS))
+        for part in element.children:
+            if part.tag in _JOINT_PARTS:
+                self.report.ignored(part.tag, name, _JOINT_PARTS[part.tag])
+        parent, child = (self.values.child_link(element, tag) for tag in ("parent", "child"))
+        known = [
+            bool(link) and self.draft.has_link(link, element.place, what=f"joint {shown(name)}")
+            for link in (parent, child)
+        ]
+        origin = self.origin(element)
+        axis = self._axis(element, written)
+        limits = self._limits(element, written)
+        if not (name and all(known) and origin is not None):
+            return
+        self.draft.joints.append(
+            DraftJoint(
+                name=name, type=TYPES[written], parent=parent, child=child, on_parent=origin,
+                on_child=Pose.identity(3), axis=axis, limits=limits, place=element.place,
+            )
+        )  # fmt: skip
+        self.report.used("joint", name, TYPES[written])
+        self._mimic(element, name)
+
+    def origin(self, element: Element) -> Pose | None:
+        """Pose of an optional `<origin>` child; None after a problem."""
+        found = next(element.find_all("origin"), None)
+        if found is None:
+            return Pose.identity(3)
+        given = found.attributes
+        xyz = self.values.numbers(found, given.get("xyz", "0 0 0"), 3, what="xyz", unit="length")
+        if "quat_xyzw" in given:
+            q = self.values.numbers(found, given["quat_xyzw"], 4, what="quat_xyzw", unit="angle")
+            if q is not None and float(np.linalg.norm(q)) < 1e-6:
+                self.problems.add(found.place, got="quat_xyzw of length zero", expected="a unit quaternion")
+                q = None
+            turn = None if q is None else rotation_from_quaternion_wxyz([q[3], q[0], q[1], q[2]])
+        else:
+            turn = self.values.angles(found, given.get("rpy", "0 0 0"), what="rpy")
+        return None if xyz is None or turn is None else Pose.at(xyz, turn)
+
+    def _axis(self, element: Element, written: str) -> np.ndarray | None:
+        if written in ("fixed", "floating"):
+            return None
+        found = next(element.find_all("axis"), None)
+        text = "1 0 0" if found is None else found.attributes.get("xyz", "1 0 0")
+        return self.values.direction(found or element, text, what="axis")
+
+    def _limits(self, element: Element, written: str) -> tuple[JointLimits, ...]:
+        found = next(element.find_all("limit"), None)
+        if found is None or written not in ("revolute", "continuous", "prismatic"):
+            return ()
+        got = {key: self.values.number(found, key) for key in ("lower", "upper", "velocity", "effort")}
+        lower, upper = got["lower"], got["upper"]
+        if written == "continuous":
+            lower = upper = None
+        if lower is not None and upper is not None and lower > upper:
+            self.problems.add(found.place, f"lower limit {lower:g} is above upper limit {upper:g}")
+            return ()
+        return (JointLimits(lower, upper, got["velocity"] or None, got["effort"] or None),)
+
+    def _mimic(self, element: Element, name: str) -> None:
+        found = next(element.find_all("mimic"), None)
+        if found is None:
+            return
+        leader = self.values.name(found, "joint")
+        factor = self.values.number(found, "multiplier", default=1.0)
+        offset = self.values.number(found, "offset", default=0.0)
+        if not leader or factor is None or offset is None:
+            return
+        joints = {j.attributes.get("name", ""): j for j in (element.parent or element).find_all("joint")}
+        if leader not in joints or leader == name:
+            self.problems.add(
+                found.place, f"mimic names the joint {shown(leader)}", name=leader,
+                expected="another joint of the file", choices=[j for j in joints if j != name],
+            )  # fmt: skip
+            return
+        self.draft.couplings.append(
+            Coupling(
+                f"mimic:{name}",
+                {name: 1.0, leader: -factor},
+                polynomial=(offset,),
+                references={name: 0.0, leader: 0.0},
+            )
+        )
+        self.report.used("mimic", name, f"{name} = {factor:g} x {leader} + {offset:g}")
