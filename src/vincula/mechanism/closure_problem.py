@@ -9,7 +9,7 @@ characteristic length, so that one number measures both turns and displacements.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
@@ -61,10 +61,12 @@ class Equations:
     Attributes:
         gaps: Residuals, metres / L and radians.
         jacobian: rows x columns, unknowns in metres / L and radians.
+        decomposed: Singular value decompositions of blocks of columns, kept by who asks for them.
     """
 
     gaps: Vector
     jacobian: Matrix
+    decomposed: dict[bytes, tuple[Matrix, Vector, Matrix]] = field(default_factory=dict)
 
 
 class ClosureProblem:

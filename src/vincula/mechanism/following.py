@@ -105,8 +105,9 @@ class _Run:
         watching = watches(self.problem, self.motors, fixed)
         self.stepper = Stepper(self.problem, self.free, watching, self.motors, bounds, through)
         self.state = self.problem.start(began)
+        self.equations = self.problem.equations(self.state)
         self.last = began
-        self.stepper.ranks_at(self.state)
+        self.stepper.ranks_at(self.equations)
         self.travelled = 0.0
         self.points: list[PathPoint] = []
 
@@ -116,7 +117,7 @@ class _Run:
         lengths = [float(np.linalg.norm(way)) for way in self._ways(goals)]
         total = sum(lengths)
         marks = None if samples is None else np.linspace(0.0, total, samples + 1)[1:]
-        self._record(TrackPoint(self.state, 0.0, self.problem.equations(self.state)))
+        self._record(TrackPoint(self.state, 0.0, self.equations))
         stopped: PathEvent | None = None
         for k, (goal, length) in enumerate(zip(goals, lengths, strict=True)):
             if length == 0.0:
@@ -152,7 +153,7 @@ class _Run:
         way = self.problem.variables.step_between(self.state, goal)
         way[self.free] = 0.0
         track = Track(self.problem, self.free, way, self.stepper.rank)
-        point = TrackPoint(self.state, 0.0, self.problem.equations(self.state))
+        point = TrackPoint(self.state, 0.0, self.equations)
         for mark in marks:
             last = mark == marks[-1]
             point, found = self.stepper.follow(track, point, mark)
@@ -162,11 +163,11 @@ class _Run:
                 return event
             if last:
                 exact = asked_exactly(self.problem, point.state, goal, self.free)
-                point = track.at(exact, point.travelled)
+                point = TrackPoint(exact, point.travelled, point.equations)
             if not last or record_end:
                 self._record(point)
         self.travelled += track.length
-        self.state = point.state
+        self.state, self.equations = point.state, point.equations
         return None
 
     def _record(self, point: TrackPoint, known: Configuration | None = None) -> None:

@@ -14,13 +14,13 @@ from typing import Final
 import numpy as np
 
 from vincula.arrays import Vector
-from vincula.mechanism.closure_problem import ClosureProblem
+from vincula.mechanism.closure_problem import ClosureProblem, Equations
 from vincula.mechanism.closure_solver import Limits
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.locating import Measuring, minimum, root
 from vincula.mechanism.singularities import Singularity, classified
 from vincula.mechanism.tracks import Track, TrackPoint
-from vincula.mechanism.watching import Measure, SingularityKind, Watch, decided, measured
+from vincula.mechanism.watching import Measure, SingularityKind, Watch, decided, measured_block
 from vincula.numerics.rank import negligible
 
 LONGEST: Final = 0.2
@@ -99,9 +99,8 @@ class Stepper:
         self._ranks: list[int] = []
         self._first = True
 
-    def ranks_at(self, state: Vector) -> None:
+    def ranks_at(self, equations: Equations) -> None:
         """Take the ranks at a state as the generic ones."""
-        equations = self.problem.equations(state)
         residual = float(np.linalg.norm(equations.gaps))
         self._ranks = [decided(equations.jacobian[:, w.columns], residual).rank for w in self.watching]
         self.rank = decided(equations.jacobian[:, self.free], residual).rank
@@ -136,9 +135,8 @@ class Stepper:
         return all(s.kind in self.through for s in found.singularities)
 
     def _measures(self, point: TrackPoint) -> tuple[Measure, ...]:
-        jacobian = point.equations.jacobian
         return tuple(
-            measured(jacobian[:, watch.columns], rank)
+            measured_block(point.equations, watch.columns, rank)
             for watch, rank in zip(self.watching, self._ranks, strict=True)
         )
 
@@ -169,7 +167,7 @@ class Stepper:
     def _learnt(self, track: Track, here: _Here, there: _Here) -> _Here:
         """Generic ranks from the first point after the start, in case the start is singular."""
         old = list(self._ranks)
-        self.ranks_at(there.point.state)
+        self.ranks_at(there.point.equations)
         track.rank = self.rank
         return here if self._ranks == old else _Here(here.point, here.tangent, self._measures(here.point))
 
@@ -241,14 +239,14 @@ class Stepper:
         columns, rank = self.watching[k].columns, self._ranks[k]
 
         def measure(point: TrackPoint) -> float:
-            there = measured(point.equations.jacobian[:, columns], rank)
+            there = measured_block(point.equations, columns, rank)
             return there.sign_against(against) * there.smallest
 
         return measure
 
     def _is_singular(self, point: TrackPoint, k: int) -> bool:
-        block = point.equations.jacobian[:, self.watching[k].columns]
-        return decided(block, point.residual).rank < self._ranks[k]
+        measure = measured_block(point.equations, self.watching[k].columns, self._ranks[k])
+        return decided(measure.jacobian, point.residual, measure.values).rank < self._ranks[k]
 
     def _singular(
         self, track: Track, watch: Watch, point: TrackPoint, measure: Measure, share: float, there: _Here

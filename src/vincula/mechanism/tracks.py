@@ -15,7 +15,7 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.mechanism.closure_problem import ClosureProblem, Equations
 from vincula.mechanism.closure_values import Mask
-from vincula.mechanism.watching import measured
+from vincula.mechanism.watching import measured, measured_block
 
 POLISHED: Final = 5e-15
 """Scaled closure residual that needs no further correction."""
@@ -85,11 +85,11 @@ class Track:
             point: Where.
             along: A direction that the tangent must not oppose; by default s increases.
         """
-        block = self.augmented(point)
-        follow = measured(block[:, :-1], self.rank)
-        rates = -follow.solved(block[:, -1])
-        size = float(np.linalg.norm(block[:, -1]))
-        missed = float(np.linalg.norm(block[:, :-1] @ rates + block[:, -1]))
+        follow = measured_block(point.equations, self.free, self.rank)
+        driven = point.equations.jacobian @ self.direction
+        rates = -follow.solved(driven)
+        size = float(np.linalg.norm(driven))
+        missed = float(np.linalg.norm(follow.jacobian @ rates + driven))
         tangent = np.append(rates, 1.0)
         tangent /= np.linalg.norm(tangent)
         if along is not None and float(tangent @ along) < 0.0:
@@ -109,10 +109,11 @@ class Track:
         sizes: list[float] = []
         best = point.residual
         for _ in range(8):
-            block = self.augmented(point)
             if landing:
-                step = np.append(measured(block[:, :-1], self.rank).solved(-point.equations.gaps), 0.0)
+                follow = measured_block(point.equations, self.free, self.rank)
+                step = np.append(follow.solved(-point.equations.gaps), 0.0)
             else:
+                block = self.augmented(point)
                 if normal is not None:
                     block = block - np.outer(block @ normal, normal)
                 step = measured(block, self.rank).solved(-point.equations.gaps)

@@ -15,7 +15,7 @@ from typing import Final, Literal
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_problem import MEMBER, ClosureProblem, Equations
 from vincula.mechanism.closure_values import Mask
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import EPS, RankDecision, decide_rank
@@ -44,15 +44,15 @@ class Measure:
 
     Attributes:
         rank: The generic rank that is assumed.
-        values: Singular values.
         left: All left singular vectors.
+        values: Singular values.
         right: All right singular vectors.
         jacobian: The block.
     """
 
     rank: int
-    values: Vector
     left: Matrix
+    values: Vector
     right: Matrix
     jacobian: Matrix
 
@@ -82,8 +82,16 @@ class Measure:
 
 def measured(jacobian: Matrix, rank: int) -> Measure:
     """The measure of a block at an assumed rank."""
-    left, values, right = svd(jacobian)
-    return Measure(rank, values, left, right, jacobian)
+    return Measure(rank, *svd(jacobian), jacobian)
+
+
+def measured_block(equations: Equations, columns: Mask, rank: int) -> Measure:
+    """The measure of some columns at an assumed rank; decomposed once a state."""
+    key = columns.tobytes()
+    block = equations.jacobian[:, columns]
+    if key not in equations.decomposed:
+        equations.decomposed[key] = svd(block)
+    return Measure(rank, *equations.decomposed[key], block)
 
 
 def decided(jacobian: Matrix, residual: float, values: Vector | None = None) -> RankDecision:
