@@ -158,7 +158,7 @@ class _Reader:
         if kind == "parameter":
             name = symbol[1:]
             if name not in self._parameters:
-                hint = suggestion(name, self._parameters) or "; no parameters are declared"
+                hint = suggestion(name, self._parameters) or "; none is known here"
                 self._refuse(f"no parameter is named {shown(name)}{hint}")
             self._advance()
             return self._parameters[name]

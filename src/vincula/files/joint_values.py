@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from vincula.arrays import Vector
-from vincula.errors import ModelError, ShapeError, UnknownNameError
+from vincula.errors import ModelError, UnknownNameError
 from vincula.files.units import Units
 
 if TYPE_CHECKING:
@@ -56,12 +56,11 @@ class JointValues:
 
         Raises:
             UnknownNameError: No such joint or axis.
-            ShapeError: The wrong number of values.
-            ModelError: An angle that is in degrees, or a quaternion of length zero.
+            ModelError: The wrong number of values, an angle in degrees, a quaternion of length zero.
         """
         flags = self.linear(name)
         if len(numbers) != len(flags):
-            raise ShapeError(f"value of {name!r}", (len(numbers),), f"({len(flags)},)")
+            raise ModelError(f"{name} has {len(flags)} value{'s' * (len(flags) > 1)}, got {len(numbers)}")
         for number, flag in zip(numbers, flags, strict=True):
             if flag is False:
                 self._refuse_degrees(name, number)

@@ -19,6 +19,7 @@ from vincula.files.tree import Document, Items, Leaf, Node, Table, number
 _BLANK: Final = re.compile(r"[ \t\n]*")
 _STRING: Final = re.compile(r'"(?:[^"\\\x00-\x1f]|\\["\\/bfnrt]|\\u[0-9a-fA-F]{4})*"')
 _WORD: Final = re.compile(r"[^\s,:\[\]{}\"']+")
+_ENDS: Final = "the file ends in the middle of a list or table"
 _CONSTANTS: Final = {"true": True, "false": False, "null": None}
 
 
@@ -29,10 +30,18 @@ def read_json(source: Source, limits: Limits = DEFAULT_LIMITS) -> Document:
         FileError: Not JSON, or a limit passed; with line and column.
     """
     source.refuse_larger_than(limits.json_bytes, "JSON file")
+    _refuse_too_many_commas(source, limits)
     reader = _Reader(source, limits)
     root = reader.value((), 0)
     reader.end()
     return Document(source.file, root, "JSON", reader.problems)
+
+
+def _refuse_too_many_commas(source: Source, limits: Limits) -> None:
+    """Refuse at once what the reader would refuse later: there are more values than commas."""
+    commas = _STRING.sub("", source.text).count(",")
+    if commas >= limits.nodes:
+        raise FileError(f"{source.file}:1:1: more than {limits.nodes} values ({commas} commas)")
 
 
 class _Reader:
@@ -88,7 +97,8 @@ class _Reader:
             count += 1
             place = self._position(self._at)
             if self._text[self._at : self._at + 1] != '"':
-                self._refuse("expected a key in double quotes")
+                ended = self._at >= len(self._text)
+                self._refuse(_ENDS if ended else "expected a key in double quotes")
             key = self._string()
             self._blank()
             if self._text[self._at : self._at + 1] != ":":
@@ -112,11 +122,7 @@ class _Reader:
         if not after_item:
             return False
         if character != ",":
-            self._refuse(
-                "the file ends in the middle of a list or table"
-                if not character
-                else f"expected ',' or '{bracket}'"
-            )
+            self._refuse(_ENDS if not character else f"expected ',' or '{bracket}'")
         self._step()
         if self._text[self._at : self._at + 1] == bracket:
             self._refuse("expected a value after ','")

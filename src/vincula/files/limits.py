@@ -36,7 +36,7 @@ class Limits:
         aliases: Aliases of a YAML file.
         number_characters: Characters in one number.
         name_characters: Characters in one name.
-        seconds: Time for parsing one file [s].
+        seconds: Computing time for parsing one file [s].
     """
 
     xml_bytes: int = 8 * _MIB
@@ -66,11 +66,11 @@ DEFAULT_LIMITS: Final = Limits()
 
 
 class Deadline:
-    """A clock that refuses to go on after `limits.seconds`."""
+    """A clock of computing time that refuses to go on after `limits.seconds`; waiting does not count."""
 
     def __init__(self, file: str, limits: Limits) -> None:
         self._file, self._seconds = file, limits.seconds
-        self._end = time.monotonic() + limits.seconds
+        self._end = time.thread_time() + limits.seconds
 
     def check(self, line: int = 0, column: int = 0) -> None:
         """Go on, or refuse.
@@ -78,7 +78,7 @@ class Deadline:
         Raises:
             FileError: The time is over.
         """
-        if time.monotonic() > self._end:
+        if time.thread_time() > self._end:
             place = Place(self._file, line, column)
             raise FileError(
                 f"{place.text()}: reading took more than {self._seconds:g} s; the file is too complex"

@@ -115,6 +115,8 @@ def _base(document: Document, load_base: LoadBase) -> Loaded | None:
         except FileError as error:
             place = document.place(["base"]).text()
             raise type(error)(f"{error}\n{place}: the file above is the base here", error.problems) from None
+        except ModelError as error:
+            raise FileError(f"{document.place(['base']).text()}: {error}") from error
     return None
 
 

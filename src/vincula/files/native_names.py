@@ -46,9 +46,26 @@ def with_couplings(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
             )
         elif _known_axes(sketch, ["motors", index, "drives"], motor.drives, linear):
             drives.append(drive(motor, sketch.scale, linear))
-    more = {"couplings": (*mechanism.couplings, *couplings), "drives": (*mechanism.drives, *drives)}
-    changed: Mechanism | None = sketch.attempt(["couplings"], partial(replace, mechanism, **more))
-    return mechanism if changed is None else changed
+    every, motors = (*mechanism.couplings, *couplings), (*mechanism.drives, *drives)
+    try:
+        return replace(mechanism, couplings=every, drives=motors)
+    except ModelError:
+        _try_one_by_one(sketch, mechanism, couplings, drives)
+        return mechanism
+
+
+def _try_one_by_one(
+    sketch: Sketch, mechanism: Mechanism, couplings: list[Coupling], drives: list[Drive]
+) -> None:
+    """Tell which of the couplings and motors cannot be used."""
+    places = {entry.name: index for index, entry in enumerate(sketch.entry.couplings)}
+    for one in couplings:
+        sketch.attempt(["couplings", places[one.name]], partial(replace, mechanism, couplings=(one,)))
+    motors = [motor if isinstance(motor, str) else motor.name for motor in sketch.entry.motors or ()]
+    for motor in drives:
+        sketch.attempt(["motors", motors.index(motor.name)], partial(replace, mechanism, drives=(motor,)))
+    if not sketch.document.problems:
+        sketch.attempt(["couplings"], partial(replace, mechanism, couplings=couplings, drives=drives))
 
 
 def _known_axes(sketch: Sketch, location: Location, named: Iterable[str], linear: Mapping[str, bool]) -> bool:
@@ -76,6 +93,8 @@ def with_locks_and_motors(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
             motors.update({motor.name: found[0]} if found else {})
         else:
             name = motor if isinstance(motor, str) else motor.name
+            if not isinstance(motor, str) and name not in {drive.name for drive in mechanism.drives}:
+                continue  # already told
             found = sketch.attempt(["motors", index], partial(mechanism.resolve_motors, [name]))
         for axis in found or ():
             if axis in active:

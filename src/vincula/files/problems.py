@@ -126,8 +126,9 @@ def shown(value: object, most: int = 60) -> str:
     """A value of a file for a message: quoted when text, unprintable characters escaped, cut to size."""
     if isinstance(value, str):
         cut = value if len(value) <= most else value[: most - 3] + "..."
-        escaped = "".join(c if c.isprintable() and c not in "\\'" else _escape(c) for c in cut)
-        return f"'{escaped}'"
+        quote = '"' if "'" in cut and '"' not in cut else "'"
+        escaped = "".join(c if c.isprintable() and c not in ("\\", quote) else _escape(c) for c in cut)
+        return f"{quote}{escaped}{quote}"
     if value is None:
         return "nothing"
     if isinstance(value, bool):

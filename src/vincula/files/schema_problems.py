@@ -98,10 +98,14 @@ def _expected(kind: str, context: dict[str, Any], location: tuple[str | int, ...
     if kind == "list_type" and location and location[-1] == "list":
         return "coordinates [x, y, z] or {in: BODY, xyz: [x, y, z]}"
     if kind == "too_short":
-        return f"at least {context['min_length']}"
+        return f"at least {_entries(context['min_length'])}"
     if kind == "too_long":
-        return f"at most {context['max_length']}"
+        return f"at most {_entries(context['max_length'])}"
     return _EXPECTED.get(kind, kind.replace("_", " "))
+
+
+def _entries(count: int) -> str:
+    return "one entry" if count == 1 else f"{count} entries"
 
 
 def _form(value: Any) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from vincula.errors import ModelError
 from vincula.files.problems import shown
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from vincula.files.schema import NativeFile
     from vincula.mechanism.mechanism import Mechanism
 
+_PART: Final = re.compile(r"(?P<part>(?:joint|contact|frame|body) '[^']*': )(?P<words>\w+(?: \w+)?)")
 Result = TypeVar("Result")
 
 
@@ -56,5 +58,13 @@ class Sketch:
         try:
             return action()
         except ModelError as error:
-            self.problem(location, str(error))
+            self.problem(*self._nearest(location, str(error)))
             return None
+
+    def _nearest(self, location: Location, message: str) -> tuple[Location, str]:
+        """The place and the words of a refusal `joint 'o1': axis ...`: the path says the beginning."""
+        match = _PART.match(message)
+        if match is None:
+            return location, message
+        key = next((key for key in match["words"].split() if self.document.node([*location, key])), None)
+        return (location if key is None else [*location, key]), message[match.end("part") :]

@@ -82,7 +82,7 @@ class _Reader:
         self._next("StreamStart")
         start = self._next()
         if _kind(start) == "StreamEnd":
-            self._refuse(start, "the file holds comments only, expected a document")
+            raise FileError(f"{self._file}:1:1: the file holds comments only, expected a document")
         if getattr(start, "version", None) not in (None, (1, 2)) or getattr(start, "tags", None):
             self._refuse(start, "expected YAML 1.2 without %TAG and other %YAML directives")
         root = self._node(self._next(), (), 0)
@@ -206,7 +206,6 @@ def _value(event: Any) -> str | int | float | bool | None:
 
 _WORDS: Final = {
     "found character '\\t' that cannot start any token": "got a tab, expected blanks for indentation",
-    "expected the node content, but found '<stream end>'": "the file ends in the middle of a list or table",
     "did not find expected ',' or ']'": "expected ',' or ']'",
     "did not find expected ',' or '}'": "expected ',' or '}'",
 }
@@ -214,4 +213,6 @@ _WORDS: Final = {
 
 def _in_words(problem: str) -> str:
     text = " ".join(problem.split())
+    if "'<stream end>'" in text:
+        return "the file ends in the middle of a list or table"
     return _WORDS.get(text, f"not YAML: {text}" if text.isprintable() else f"not YAML: {shown(text, 200)}")
