@@ -77,13 +77,16 @@ def characteristic_length(mechanism: Mechanism) -> float:
 
     Rounded to a power of two, so that scaling by it is exact; 1 m if all points coincide.
     """
+    from vincula.numerics.rank import negligible
+
     poses = body_poses(mechanism, mechanism.home)
     centre = reference_position(mechanism, poses)
     parts: tuple[Joint | ContactPart, ...] = (*mechanism.joints, *mechanism.contacts)
     points = [part_frames(part, poses)[0].position for part in parts if part.type not in ("free", "fixed")]
     if not points:
         return 1.0
-    square = float(np.mean(np.sum((np.array(points) - centre) ** 2, axis=1)))
-    if square == 0.0 or not math.isfinite(square):
+    distance = math.sqrt(float(np.mean(np.sum((np.array(points) - centre) ** 2, axis=1))))
+    farthest = float(np.abs([centre, *points]).max())
+    if negligible(distance, farthest) or not math.isfinite(distance):
         return 1.0
-    return 2.0 ** round(0.5 * math.log2(square))
+    return 2.0 ** round(math.log2(distance))
