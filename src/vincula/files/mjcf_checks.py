@@ -37,6 +37,7 @@ PLACED: Final = frozenset({"body", "joint", "freejoint", "site", "frame", "repli
 
 _DIRECTIONS: Final = {"axis": 3, "zaxis": 3, "axisangle": 3, "quat": 4}
 _SHORTEST: Final = 1e-9
+_LARGEST: Final = 1e12
 _TURN: Final = 2 * math.pi * (1 + 1e-9)
 
 _TEXTS: Final = frozenset((
@@ -171,16 +172,25 @@ def _not_finite(value: str) -> Iterator[str]:
                 yield word
 
 
+def _expected_instead(word: str) -> str:
+    """What a word of a placing attribute should be; empty when it is a number that can be used."""
+    if _NOT_FINITE.fullmatch(word):
+        return "a finite number"
+    if not is_number(word):
+        return "a number"
+    size = abs(float(word))
+    if math.isinf(size):
+        return "a finite number"
+    return f"a number of at most {_LARGEST:g}" if size > _LARGEST else ""
+
+
 def _check_placing(element: Element, attribute: str, problems: Problems, *, in_radians: bool) -> None:
     words, count = numbers_of(element, attribute), PLACING[attribute]
     what = f"{attribute}: got"
     for word in words:
-        if not is_number(word):
-            finite = "a finite number" if _NOT_FINITE.fullmatch(word) else "a number"
-            problems.add(element.place, f"{what} {shown(word)}, expected {finite}")
-            return
-        if math.isinf(float(word)):
-            problems.add(element.place, f"{what} {shown(word)}, expected a finite number")
+        expected = _expected_instead(word)
+        if expected:
+            problems.add(element.place, f"{what} {shown(word)}, expected {expected}")
             return
     if len(words) != count:
         expected = "1 number" if count == 1 else f"{count} numbers"
