@@ -15,8 +15,9 @@ from vincula.errors import VinculaError
 from vincula.files.mjcf import load_mjcf
 
 WORDS = (
-    "nan", "-1", "1e300", "1e-300", "0", "", "<", ">", "<body/>", "</body>", "inf", "false", "joint", "free", "ball",
-    '<replicate count="3">', "1 2 3 4 5 6 7 8 9", "99999999999", '<include file="m.xml"/>', "name=", "&lt;", "é",
+    "nan", "-1", "1e300", "1e-300", "0", "", "<", ">", "<body/>", "</body>", "inf", "false", "joint", "free",
+    "ball", '<replicate count="3">', "1 2 3 4 5 6 7 8 9", "99999999999", '<include file="m.xml"/>', "name=",
+    "&lt;", "é",
 )  # fmt: skip
 
 
