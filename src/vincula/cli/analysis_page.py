@@ -71,6 +71,7 @@ def _subject(analysis: Analysis, subject: Subject) -> list[tuple[str, str]]:
         ("configuration", at),
         ("motors", _names(model.motors)),
         ("passive axes", _names(model.passives)),
+        ("locked", listing(subject.mechanism.lock, 24) if subject.mechanism.lock else ""),
         ("constraints", f"{len(model.rows)} rows" + (f"; joints cut: {listing(cuts, 6)}" if cuts else "")),
         ("weights", _weights(analysis)),
         ("convention", "as printed in the paper" if analysis.convention == "printed" else ""),
@@ -109,15 +110,23 @@ def _weights(analysis: Analysis) -> str:
 
 
 def _counts(page: Page, model: LinearModel) -> None:
+    """The summary numbers (with both readings where ranks are in doubt) and the twelve counts."""
+    ledger = model.ledger
     page.heading("Mobility and statics")
-    summary = model.ledger.summary.as_dict()
-    page.table(
-        Table(
-            [Column("number"), Column("", "right"), Column("counts", fold=True)],
-            [[name.replace("_", " "), str(summary[name]), meaning] for name, meaning in SUMMARY.items()],
-        )
-    )
-    twelve = model.ledger.counts.as_dict()
+    readings = {"": ledger.summary}
+    if ledger.status != "certain":
+        zero, none_zero = ledger.scenarios
+        readings = {"taken as": ledger.summary, "if doubtful\nare zero": zero, "if none\nis zero": none_zero}
+    values = [reading.as_dict() for reading in readings.values()]
+    columns = [Column("number"), *(Column(title, "right") for title in readings), Column("counts", fold=True)]
+    rows = [
+        [name.replace("_", " "), *(str(value[name]) for value in values), meaning]
+        for name, meaning in SUMMARY.items()
+    ]
+    # In doubt the two readings matter more than what the names mean.
+    brief = [Table(columns[:-1], [row[:-1] for row in rows])] if len(readings) > 1 else []
+    page.table(Table(columns, rows), *brief)
+    twelve = ledger.counts.as_dict()
     page.sentence("  ".join(f"{name} {value}" for name, value in twelve.items()), "twelve counts:")
 
 

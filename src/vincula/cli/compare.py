@@ -28,7 +28,6 @@ CRITERION_NAMES: Final = (
     "compare",
     epilog="Example: vincula compare example:five-bar --active o1,o5 --active o2,o4 --active all",
 )
-@mechanism_options
 @click.option(
     "--active",
     "designs",
@@ -37,6 +36,7 @@ CRITERION_NAMES: Final = (
     metavar="A,B|all",
     help="Motors of one design; give the option once a design.",
 )
+@mechanism_options
 @click.option(
     "--rank-by",
     "criterion",

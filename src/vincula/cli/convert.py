@@ -22,10 +22,10 @@ ENDINGS: Final = (".yaml", ".yml", ".json")
 @click.command("convert", epilog="Example: vincula convert robot.xml robot.yaml --reference gripper")
 @click.argument("file", metavar="IN")
 @click.argument("output", metavar="OUT")
-@set_option
 @active_option
-@lock_option
 @reference_options
+@lock_option
+@set_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is there.")
 @output_options
 def convert_command(

@@ -47,7 +47,7 @@ def add_ellipsoid(page: Page, ellipsoid: Ellipsoid, analysis: Analysis) -> None:
     """
     page.heading(f"{ellipsoid.kind.capitalize()} ellipsoid", READINGS[ellipsoid.kind][ellipsoid.viewpoint])
     if not ellipsoid.classes:
-        page.sentence("none: there is no such force" if "force" in ellipsoid.kind else "none")
+        page.sentence("none: there is no such force" if "force" in ellipsoid.kind else "none: nothing moves")
         return
     if ellipsoid.kind in ("passive force", "dual force") and _repeats(ellipsoid, analysis.active_force):
         page.sentence("the same finite values and directions as the active force ellipsoid")

@@ -10,8 +10,8 @@ from vincula.cli.options import active_option, mechanism_options, output_options
 from vincula.cli.output import print_json, warnings_on_stderr
 
 
-@click.command("inspect")
-@together(mechanism_options, active_option)
+@click.command("inspect", short_help="What is in FILE: bodies, joints, loops, motors.")
+@together(active_option, mechanism_options)
 @click.option("--all", "everything", is_flag=True, help="Every joint and loop, however many there are.")
 @output_options
 def inspect_command(file: str, active: str | None, everything: bool, as_json: bool, **options: Any) -> None:

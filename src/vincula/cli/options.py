@@ -63,7 +63,11 @@ active_option = click.option(
 )
 
 lock_option = click.option(
-    "--lock", multiple=True, metavar="A,B", callback=once, help="Joints or axes held still for the analysis."
+    "--lock",
+    multiple=True,
+    metavar="A,B",
+    callback=once,
+    help="Joints or axes held still; replaces the locks of the file.",
 )
 
 reference_options = together(
@@ -134,9 +138,9 @@ output_options = together(json_option, debug_option)
 
 mechanism_options = together(
     file_argument,
-    set_option,
-    lock_option,
     reference_options,
     at_option,
+    lock_option,
+    set_option,
     tolerance_option,
 )
