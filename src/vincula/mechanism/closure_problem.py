@@ -31,7 +31,6 @@ from vincula.mechanism.kinematics import part_frames, reference_position
 from vincula.mechanism.parts import GROUND, ContactPart, Coupling, Drive, Joint
 from vincula.mechanism.residuals import axis_linear, axis_values
 from vincula.spatial.poses import Pose
-from vincula.spatial.selectors import contact_components
 from vincula.spatial.twists import moment_arm
 
 if TYPE_CHECKING:
@@ -111,8 +110,7 @@ class ClosureProblem:
             else:
                 self._add_block(joint, joint_selection(mechanism.type_of(joint), joint.second_axis))
         for contact in mechanism.contacts:
-            components = contact_components(contact.type, mechanism.space)
-            self._add_block(contact, contact_selection(components, mechanism.space.translations))
+            self._add_block(contact, contact_selection(contact.type, mechanism.space))
         if member:
             self._add_block(own[-1], whole_pose(mechanism.space.translations), own=True)
         self._sources += [c.name for c in self.couplings] + [d.name for d in self.drives]

@@ -16,8 +16,11 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.mechanism.joint_types import JointType
 from vincula.spatial.poses import Pose, rotation_vector
+from vincula.spatial.selectors import contact_components
+from vincula.spatial.space import Space
 
 Turning = Literal["vector", "tilt", "between axes"]
+_X = np.array([1.0, 0.0, 0.0])
 _Z = np.array([0.0, 0.0, 1.0])
 
 
@@ -68,11 +71,17 @@ def joint_selection(kind: JointType, second_axis: Vector) -> Selection:
     return Selection(linear, (0, 1), "tilt", s, _Z)
 
 
-def contact_selection(components: tuple[int, ...], translations: int) -> Selection:
-    """What a contact type blocks (Table I)."""
-    linear = tuple(k for k in components if k < translations)
-    angular = tuple(k - translations for k in components if k >= translations)
-    return Selection(linear, angular, "vector", translations, _Z)
+def contact_selection(kind: str, space: Space) -> Selection:
+    """What a contact type blocks (Table I).
+
+    A line without friction blocks one tilt alone: the angle between its direction and the normal.
+    """
+    components = contact_components(kind, space)
+    s = space.translations
+    linear = tuple(k for k in components if k < s)
+    if kind == "line":
+        return Selection(linear, (0,), "between axes", s, _X)
+    return Selection(linear, tuple(k - s for k in components if k >= s), "vector", s, _Z)
 
 
 def gap_rows(selection: Selection, first: Pose, second: Pose) -> tuple[Vector, Matrix]:
