@@ -83,6 +83,7 @@ def test_help_lists_the_commands_in_the_order_of_work() -> None:
     listed = result.output.split("Commands:")[1]
     places = [listed.index(f"  {name} ") for name in COMMANDS]
     assert places == sorted(places)
+    assert "..." not in listed
     assert CliRunner().invoke(cli, ["-h"]).output == result.output
 
 

@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from vincula.analysis.ellipsoid import Convention, Viewpoint
 
 
-@click.command("analyze")
-@together(
-    mechanism_options, active_option, weights_option, viewpoint_option, convention_option, strict_option
+@click.command(
+    "analyze",
+    short_help="Mobility, statics and ellipsoids of FILE.",
+    epilog="Example: vincula analyze robot.xml --reference gripper@tip --active j1,j2 --at key:home",
 )
-@output_options
+@together(active_option, mechanism_options, weights_option, viewpoint_option, convention_option)
+@together(strict_option, output_options)
 @click.pass_context
 def analyze_command(
     ctx: click.Context,

@@ -26,6 +26,7 @@ CRITERION_NAMES: Final = (
 
 @click.command(
     "compare",
+    short_help="Rank choices of motors for FILE.",
     epilog="Example: vincula compare example:five-bar --active o1,o5 --active o2,o4 --active all",
 )
 @click.option(

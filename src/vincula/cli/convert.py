@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 ENDINGS: Final = (".yaml", ".yml", ".json")
 
 
-@click.command("convert", epilog="Example: vincula convert robot.xml robot.yaml --reference gripper")
+@click.command(
+    "convert",
+    short_help="Write IN as a native file OUT.",
+    epilog="Example: vincula convert robot.xml robot.yaml --reference gripper",
+)
 @click.argument("file", metavar="IN")
 @click.argument("output", metavar="OUT")
 @active_option

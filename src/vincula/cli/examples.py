@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from vincula.mechanism.catalog.entry import Entry
 
 
-@click.command("examples")
+@click.command("examples", short_help="List the examples, or describe one.")
 @click.argument("name", required=False)
 @output_options
 def examples_command(name: str | None, as_json: bool) -> None:
@@ -77,7 +77,7 @@ def _entry_page(entry: Entry) -> Page:
     return page
 
 
-@click.command("schema")
+@click.command("schema", short_help="Print the JSON schema of native files.")
 @output_options
 def schema_command(as_json: bool) -> None:
     """Print the JSON schema of the native file format, with or without --json.

@@ -20,7 +20,11 @@ if TYPE_CHECKING:
 DRAWABLE: Final = ("kinematic", "active-force", "passive-force", "dual-force")
 
 
-@click.command("plot", epilog="Example: vincula plot example:five-bar -o five-bar.svg")
+@click.command(
+    "plot",
+    short_help="Draw FILE and its ellipsoids.",
+    epilog="Example: vincula plot example:five-bar -o five-bar.svg",
+)
 @click.option(
     "--active",
     "designs",
