@@ -263,6 +263,15 @@ def test_includes_and_attached_models(tmp_path: Path) -> None:
     assert load_mjcf(path)[0].name == "robot"
 
 
+def test_sites_and_tendons_may_have_materials() -> None:
+    text = model(
+        TWO.replace("</body></body>", '<site name="s" material="red"/></body></body><site name="t"/>'),
+        '<tendon><spatial name="rope" material="red"><site site="s"/><site site="t"/></spatial></tendon>'
+        '<default><site material="red"/></default><asset><material name="red"/></asset>',
+    )
+    assert [f.name for f in read(text)[0].frames] == ["t", "s"]
+
+
 def test_compiler_switches_that_would_change_the_bodies_are_told() -> None:
     text = model('<body name="a"><joint/><body name="b"/></body>', '<compiler fusestatic="true"/>')
     robot, report = read(text)

@@ -137,6 +137,9 @@ class _Writer:
         attributes = dict(element.attributes)
         if id(element) in self._names:
             attributes["file"] = self._names[id(element)]
+        if self._bare:
+            # The material of a site or tendon is an asset, and those are left out.
+            attributes.pop("material", None)
         if self._bare and element.tag == "compiler":
             attributes = {name: value for name, value in attributes.items() if name not in _COMPILER_LEFT_OUT}
         if self._bare and element.tag == "option":

@@ -31,7 +31,8 @@ def suggestion_for(message: str, element: Element | None, document: Document) ->
         word, choices = quoted[0], sorted(_schema().get(element.tag, ()))
     elif ("unknown" in message or "not found" in message) and quoted:
         word = quoted[0]
-        choices = [e.name for e in document.root.walk() if e.name and e is not element]
+        parts = [e for e in document.root.walk() if e.parent is None or e.parent.tag != "asset"]
+        choices = [e.name for e in parts if e.name and e.name != word]
     else:
         return "", []
     return word, difflib.get_close_matches(word[:100], choices[:1000], n=1)
