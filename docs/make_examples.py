@@ -41,6 +41,9 @@ ELLIPSOIDS = {
     "internal_force": "internal force",
     "dual_force": "dual force (OWFME)",
 }
+WIDTH = 7.0
+"""Width of a figure [inch]: planar panels side by side, as in the README."""
+
 EFFICIENCIES = (
     "Efficiencies: squares of the semi-axes, task size squared per motor effort squared, in m, rad, N, N m. "
     "Infinite and zero ones are explained under [concepts](../concepts.md)."
@@ -172,10 +175,10 @@ def _use(entry: Entry) -> list[str]:
 def write_figures(entry: Entry) -> None:
     """The figure of one example; for the five-bar also the three choices of motors side by side."""
     mechanism = entry.mechanism({})
-    save_figure(plot_mechanism(mechanism), FIGURES / f"{entry.name}.svg")
+    save_figure(plot_mechanism(mechanism, width=WIDTH), FIGURES / f"{entry.name}.svg")
     if entry.name == "five-bar":
         choices = ["o1,o5", "o2,o4", vc.ALL]
-        save_figure(plot_comparison(mechanism, choices), FIGURES / "five-bar-motors.svg")
+        save_figure(plot_comparison(mechanism, choices, width=WIDTH), FIGURES / "five-bar-motors.svg")
 
 
 def main(names: list[str]) -> None:
