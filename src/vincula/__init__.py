@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from vincula.mechanism.singularities import Singularity
     from vincula.model import LinearModel
     from vincula.spatial.poses import Pose
+    from vincula.view.plot import plot_comparison, plot_mechanism, save_figure
     from vincula.weights import Weights, characteristic_length_weights
 
 __all__ = [
@@ -128,6 +129,9 @@ __all__ = [
     "kinematic_ellipsoid",
     "load",
     "passive_force_ellipsoid",
+    "plot_comparison",
+    "plot_mechanism",
+    "save_figure",
     "smallest_singular_value",
     "yoshikawa_volume",
 ]
@@ -192,6 +196,9 @@ _HOME = {
     "Pose": "vincula.spatial.poses:Pose",
     "Weights": "vincula.weights:Weights",
     "characteristic_length_weights": "vincula.weights:characteristic_length_weights",
+    "plot_comparison": "vincula.view.plot:plot_comparison",
+    "plot_mechanism": "vincula.view.plot:plot_mechanism",
+    "save_figure": "vincula.view.plot:save_figure",
 }
 
 
