@@ -34,10 +34,9 @@ def random_closed(rng: np.random.Generator, *, planar: bool, loops: int) -> Mech
         kinds = _planar_kinds(rng) if planar else _spatial_kinds(rng)
         inner = [f"b{len(bodies) + k}" for k in range(len(kinds) - 1)]
         chain = [ends[0], *inner, ends[1]]
-        for kind, first, second in zip(kinds, chain[:-1], chain[1:], strict=True):
-            if rng.random() < 0.3:
-                first, second = second, first
-            joints.append(_joint(rng, f"j{len(joints) + 1}", kind, first, second, planar))
+        for kind, one, two in zip(kinds, chain[:-1], chain[1:], strict=True):
+            ends_of_joint = (two, one) if rng.random() < 0.3 else (one, two)
+            joints.append(_joint(rng, f"j{len(joints) + 1}", kind, *ends_of_joint, planar))
         bodies += inner
     make = Mechanism.planar if planar else Mechanism.spatial
     return make(joints=joints, reference=vc.Reference(bodies[1]), name="random")
@@ -54,7 +53,7 @@ def displaced(rng: np.random.Generator, mechanism: Mechanism, far: float) -> dic
             quaternion = [np.cos(half), *(np.sin(half) / far * turn)]
             start[name] = [float(v) for v in quaternion]
         else:
-            start[name] = [float(v + far * s) for v, s in zip(values, rng.uniform(-1, 1, len(values)), strict=True)]
+            start[name] = [float(v) for v in values + far * rng.uniform(-1, 1, len(values))]
     return start
 
 

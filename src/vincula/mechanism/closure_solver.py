@@ -23,10 +23,12 @@ from vincula.numerics.rank import decide_rank
 
 LONGEST_STEP: Final = 0.7
 """No unknown moves by more in one step [rad, or lengths L]: the solution found stays near the start."""
-NEAR: Final = 1e-4
-"""Below this residual the normal equations would lose digits: a singular value decomposition from here."""
+STRONG: Final = 1e-7
+"""Weaker damping is applied through singular values: normal equations would lose the free directions."""
 FLOOR: Final = 1e-15
 """A scaled residual below this is rounding: nothing is left to improve."""
+SLACK: Final = 1e-12
+"""A value this near to a limit stands on it [m, rad]."""
 PATIENCE: Final = 8
 """Steps in a row that gain less than a thousandth, after which a start is given up."""
 
@@ -79,12 +81,10 @@ def solve(
     here = problem.equations(state)
     size = float(np.linalg.norm(here.gaps))
     damping, idle, count = 1e-2, 0, 1
-    at_limit = np.zeros(problem.columns, dtype=bool)
     while size > FLOOR and count < iterations and idle < PATIENCE:
         usable = free
         if limits is not None:
-            at_limit = _pushing(problem, state, here, limits) & free
-            usable = free & ~at_limit
+            usable = free & ~_pushing(problem, state, here, limits)
         step = np.zeros(problem.columns)
         step[usable] = _step(here.jacobian[:, usable], here.gaps, damping * size * size)
         longest = float(np.abs(step).max(initial=0.0))
@@ -109,14 +109,15 @@ def solve(
         else:
             damping *= 10.0
             idle += 1 if damping * size * size > 1e4 else 0
-    return Solution(state, here, size, count, at_limit)
+    stopped = np.zeros(problem.columns, dtype=bool) if limits is None else free & _on(problem, state, limits)
+    return Solution(state, here, size, count, stopped)
 
 
 def _step(jacobian: Matrix, gaps: Vector, damping: float) -> Vector:
     """Levenberg's step for one damping; with vanishing damping the minimum-norm Gauss-Newton step."""
     if jacobian.shape[1] == 0:
         return np.zeros(0)
-    if damping > NEAR * NEAR * 1e-2:
+    if damping > STRONG:
         normal = jacobian.T @ jacobian
         normal[np.diag_indices_from(normal)] += damping
         _, found, info = dposv(normal, -(jacobian.T @ gaps))
@@ -143,11 +144,16 @@ def _clipped(problem: ClosureProblem, state: Vector, free: Mask, limits: Limits)
     return problem.variables.moved(state, (bounded - values) / problem.variables.column_scale)
 
 
+def _on(problem: ClosureProblem, state: Vector, limits: Limits) -> Mask:
+    """Rates whose values stand on a limit."""
+    values = problem.variables.scalar_values(state)
+    return np.asarray((values <= limits.lower + SLACK) | (values >= limits.upper - SLACK))
+
+
 def _pushing(problem: ClosureProblem, state: Vector, here: Equations, limits: Limits) -> Mask:
     """Rates whose values stand on a limit that the descent would cross."""
     values = problem.variables.scalar_values(state)
     descent = -(here.jacobian.T @ here.gaps)
-    slack = 1e-12
-    below = (values <= limits.lower + slack) & (descent < 0.0)
-    above = (values >= limits.upper - slack) & (descent > 0.0)
+    below = (values <= limits.lower + SLACK) & (descent < 0.0)
+    above = (values >= limits.upper - SLACK) & (descent > 0.0)
     return np.asarray(below | above)
