@@ -80,7 +80,9 @@ def _from_small(small: Matrix, large: Matrix) -> tuple[Matrix, Vector, Matrix, V
     if trusted.all():
         return left, lengths, other, partner
     rest = right[:, ~trusted]
-    other_rest, partner_rest, turn = jacobi_svd(large @ rest)
+    # Orthogonal already, but for rounding that would swamp the directions of tiny lengths.
+    image = large @ rest
+    other_rest, partner_rest, turn = jacobi_svd(image - other @ (other.T @ image))
     left_rest, lengths_rest = _normalised(small @ (rest @ turn))
     return (
         np.hstack([left[:, trusted], left_rest]),

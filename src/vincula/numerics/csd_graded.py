@@ -41,7 +41,13 @@ def angles_of_graded_pair(task: Matrix, motor: Matrix) -> Angles:
         sines = [float(1 / (1 + r * r).sqrt()) for r in ratios]
         task_side = [[float(_dot(row, z) / r) for z, r in zip(columns, ratios, strict=True)] for row in t]
         motor_side = [[float(_dot(row, z)) for z in columns] for row in s]
-    return Angles(np.array(cosines), np.array(sines), np.array(task_side), np.array(motor_side))
+    # Shapes are given because there may be no pair, or no row, at all: a mechanism without motors.
+    return Angles(
+        np.array(cosines),
+        np.array(sines),
+        np.array(task_side).reshape(len(t), k),
+        np.array(motor_side).reshape(len(s), k),
+    )
 
 
 def _rows(matrix: Matrix) -> Rows:
