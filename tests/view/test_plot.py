@@ -227,3 +227,35 @@ def test_without_matplotlib_the_install_command_is_printed(monkeypatch: pytest.M
 )
 def test_motors_in_a_line(motors: object, words: str) -> None:
     assert motors_text(example("five-bar").with_active(motors)) == words
+
+
+@pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
+def test_any_size_no_motors_strange_names_and_locks_are_drawn(tmp_path: Path, scale: float) -> None:
+    arm = vc.Mechanism.spatial(
+        joints=[
+            vc.Revolute("a$b_{", "ground", "one", at=(0, 0, 0), axis=(0, 0, 1)),
+            vc.Screw("_twist", "one", "two", at=(scale, 0, 0), axis=(1, 0, 0), lead=0.1 * scale),
+            vc.Cylindrical("<&>", "two", "three", at=(scale, scale, 0), axis=(0, 1, 1)),
+            vc.PlanarJoint("p", "three", "four", at=(0, scale, scale)),
+            vc.Fixed("f", "four", "five", at=(0, scale, 2 * scale)),
+        ],
+        reference=vc.Reference("five", origin=(0, 0, 2 * scale)),
+        lock=["_twist"],
+        weights=vc.Weights(),
+    )
+    for motors in ((), ["a$b_{"], vc.ALL):
+        figure = plot_mechanism(arm.with_active(motors), width=5.0)
+        save_figure(figure, tmp_path / "odd.svg")
+    assert "a$b_{" in texts(figure)
+    assert "screw, locked" in legend(figure)
+
+
+def test_a_single_point_is_drawn() -> None:
+    for maker in (vc.Mechanism.planar, vc.Mechanism.spatial):
+        assert plot_mechanism(
+            maker(
+                joints=[
+                    vc.Revolute("a", "ground", "bar", at=(3,) * 2 + (0,) * (maker is vc.Mechanism.spatial))
+                ]
+            )
+        ).axes

@@ -31,6 +31,7 @@ RC: Any = {
     "axes.linewidth": 0.6,
     "axes.edgecolor": "#555555",
     "axes.unicode_minus": True,
+    "text.parse_math": False,
     "xtick.labelsize": 6.5,
     "ytick.labelsize": 6.5,
     "xtick.major.width": 0.6,
