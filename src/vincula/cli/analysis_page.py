@@ -9,7 +9,7 @@ import numpy as np
 
 from vincula.cli.ellipsoid_tables import add_ellipsoid
 from vincula.cli.output import said_warnings
-from vincula.cli.page import Column, Page, Table, number, point
+from vincula.cli.page import Column, Page, Table, number, plural, point
 from vincula.errors import listing
 
 if TYPE_CHECKING:
@@ -49,6 +49,9 @@ def analysis_page(analysis: Analysis, subject: Subject) -> Page:
         page.sentence(warning, "warning:")
     for note in model.notes:
         page.sentence(note, "note:")
+    if subject.report.notes:
+        remarks = plural(len(subject.report.notes), "remark")
+        page.sentence(f"the reader made {remarks} on this file: vincula inspect {subject.file}", "note:")
     _counts(page, model)
     for ellipsoid in analysis.ellipsoids:
         add_ellipsoid(page, ellipsoid, analysis)
