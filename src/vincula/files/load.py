@@ -144,14 +144,17 @@ class _Loader:
             from vincula.files.urdf import load_urdf
 
             return Loaded(*load_urdf(source, self._limits))
+        if root == "sdf":
+            from vincula.files.sdf import load_sdf
+
+            return Loaded(*load_sdf(source, self._limits))
         raise FileError(f"{source.file}: {_other_xml(root)}; files that can be read: {listing(FORMATS)}")
 
 
-FORMATS: Final = ("vincula native (YAML or JSON)", "MJCF", "URDF")
+FORMATS: Final = ("vincula native (YAML or JSON)", "MJCF", "URDF", "SDF")
 """The formats that can be read."""
 
 _OTHER_XML: Final = {
-    "sdf": "got an SDF file",
     "COLLADA": "got a mesh (COLLADA)",
     "html": "got a web page",
     "svg": "got a picture (SVG)",

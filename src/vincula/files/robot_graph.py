@@ -102,6 +102,9 @@ class RobotDraft:
         digits_length: Largest half unit of a typed length [m].
         digits_angle: Largest half unit of a typed angle or direction [rad].
         notes: Facts that the reader of a result must know.
+        ground: The link that is the ground; None for the one link that is nobody's child.
+        directed: True where a joint can only place its child (URDF), False where it can place either of
+            its links (SDF).
     """
 
     file: str
@@ -117,10 +120,8 @@ class RobotDraft:
     digits_length: float = 0.0
     digits_angle: float = 0.0
     notes: list[str] = field(default_factory=list)
-
-    def link_choices(self) -> list[str]:
-        """Names that a joint may connect."""
-        return list(self.links)
+    ground: str | None = None
+    directed: bool = True
 
     def has_link(self, name: str, place: Place, *, what: str) -> bool:
         """Whether a link exists; adds a problem if not."""
@@ -139,15 +140,17 @@ class RobotDraft:
         """
         self._check_names()
         self.problems.refuse_if_any()
-        root = self._root()
+        root = self.ground or self._root()
         tree = self._tree(root)
         self.problems.refuse_if_any()
         names = {link: link for link in self.links} | {root: GROUND}
         poses = self._poses(root, tree)
-        in_tree = {id(joint) for joint in tree}
-        joints = [j.resolved(j.closure or id(j) not in in_tree, names) for j in self.joints]
+        in_tree = {id(joint) for joint, _ in tree}
+        joints = [
+            j.resolved(j.closure or (self.directed and id(j) not in in_tree), names) for j in self.joints
+        ]
         frames = [Frame(f.name, names.get(f.body, f.body), f.pose) for f in self.frames]
-        if root != WORLD:
+        if root != WORLD and root not in (frame.name for frame in frames):
             frames.append(Frame(root, GROUND, Pose.identity(3)))
         motors = self._motors()
         try:
@@ -212,27 +215,34 @@ class RobotDraft:
             )
         self.problems.refuse()
 
-    def _tree(self, root: str) -> list[DraftJoint]:
-        """Joints that place a link, in the order of the file, breadth first."""
-        below: dict[str, list[DraftJoint]] = {}
+    def _tree(self, root: str) -> list[tuple[DraftJoint, bool]]:
+        """Joints that place a link and whether it is their child; in the order of the file, breadth first."""
+        beside: dict[str, list[tuple[DraftJoint, bool]]] = {}
         for joint in self._tree_joints():
-            below.setdefault(joint.parent, []).append(joint)
+            beside.setdefault(joint.parent, []).append((joint, True))
+            if not self.directed:
+                beside.setdefault(joint.child, []).append((joint, False))
         reached, tree, queue = {root}, [], [root]
         for link in queue:
-            for joint in below.get(link, ()):
-                if joint.child not in reached:
-                    reached.add(joint.child)
-                    tree.append(joint)
-                    queue.append(joint.child)
+            for joint, forward in beside.get(link, ()):
+                other = joint.child if forward else joint.parent
+                if other not in reached:
+                    reached.add(other)
+                    tree.append((joint, forward))
+                    queue.append(other)
         for link, place in self.links.items():
             if link not in reached:
                 self.problems.add(place, f"no chain of joints leads from {shown(root)} to link {shown(link)}")
         return tree
 
-    def _poses(self, root: str, tree: Sequence[DraftJoint]) -> dict[str, Pose]:
+    def _poses(self, root: str, tree: Sequence[tuple[DraftJoint, bool]]) -> dict[str, Pose]:
         poses = {root: Pose.identity(3)}
-        for joint in tree:
-            poses[joint.child] = poses[joint.parent] @ joint.on_parent @ joint.on_child.inverse()
+        for joint, forward in tree:
+            step = joint.on_parent @ joint.on_child.inverse()
+            if forward:
+                poses[joint.child] = poses[joint.parent] @ step
+            else:
+                poses[joint.parent] = poses[joint.child] @ step.inverse()
         return poses
 
     def _motors(self) -> dict[str, str]:

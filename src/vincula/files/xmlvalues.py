@@ -13,7 +13,7 @@ from vincula.files.digits import half_unit, is_number
 from vincula.files.names import name_problem
 from vincula.files.problems import Problems, shown
 from vincula.files.xmltree import Element
-from vincula.mechanism.drawing import SMALLEST_DIRECTION
+from vincula.mechanism.parts import SMALLEST_DIRECTION
 
 
 @dataclass
@@ -110,11 +110,13 @@ class XmlValues:
             return None
         return vector if abs(size - 1.0) < 1e-15 else vector / size
 
-    def angles(self, element: Element, text: str, *, what: str) -> Matrix | None:
+    def angles(self, element: Element, text: str, *, what: str, degrees: bool = False) -> Matrix | None:
         """Rotation of fixed-axis roll, pitch, yaw [rad]; more than 2 pi must be degrees: refused."""
         values = self.numbers(element, text, 3, what=what, unit="angle")
         if values is None:
             return None
+        if degrees:
+            values = np.radians(values)
         if float(np.abs(values).max()) > 2 * math.pi + 1e-3:
             self.problems.add(
                 element.place,
