@@ -110,6 +110,7 @@ class _Run:
         self.stepper.ranks_at(self.equations)
         self.travelled = 0.0
         self.points: list[PathPoint] = []
+        self.passed: list[PathEvent] = []
 
     def along(self, waypoints: Sequence[Holding], samples: int | None) -> Path:
         """The path through the waypoints, recorded there or at evenly spaced samples."""
@@ -131,10 +132,14 @@ class _Run:
             stopped = self._track(goal, [*own, length], ends_here)
             if stopped is not None:
                 break
-        passed = tuple(self._event(found) for found in self.stepper.passed)
-        names = self.held.names
         return Path(
-            self.mechanism, names, tuple(self.points), total, stopped, passed, self.stepper.steps
+            self.mechanism,
+            self.held.names,
+            tuple(self.points),
+            total,
+            stopped,
+            tuple(self.passed),
+            self.stepper.steps,
         )
 
     def _goals(self, waypoints: Sequence[Holding]) -> list[Vector]:
@@ -157,6 +162,8 @@ class _Run:
         for mark in marks:
             last = mark == marks[-1]
             point, found = self.stepper.follow(track, point, mark)
+            self.passed += [self._event(one) for one in self.stepper.passed]
+            self.stepper.passed.clear()
             if found is not None:
                 event = self._event(found)
                 self._record(point, event.configuration)
