@@ -161,10 +161,12 @@ def _internal(model: LinearModel) -> str:
     counts = model.ledger.summary
     relation = force_relation(model)
     torques = _kernel_side(relation.task, relation.motor, counts.internal_torques)
-    joints = [
+    loaded = {
         name for column in localised(torques, doubt=model.ledger.subspace_doubt).T
         for name in _taking_part(column, model.motors)
-    ]  # fmt: skip
+    }  # fmt: skip
+    # In the order of the motors: that of a basis may hang on rounding.
+    joints = [column.joint for column in model.motors if column.joint in loaded]
     ways = count_of(counts.internal_torques, "way")
     return (
         f"The motors can work against each other in {ways} without pushing on anything outside: "

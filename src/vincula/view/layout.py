@@ -50,7 +50,8 @@ def window(points: Matrix, width: float) -> Window:
     if not (high - low).any():
         span = np.ones(2)
     scale = min((paper - 2 * MARGIN) / span[0], (TALLEST * paper - 2 * MARGIN) / span[1])
-    height = max(LOWEST * paper, span[1] * scale + 2 * MARGIN)
+    # Rounded, so that the last bits of an ellipsoid change nothing else on the sheet.
+    height = 0.1 * round(10.0 * max(LOWEST * paper, span[1] * scale + 2 * MARGIN))
     half = 0.5 * np.array([paper, height]) / scale
     middle = 0.5 * (low + high)
     return Window(middle - half, middle + half, float(scale), height / 72.0)
