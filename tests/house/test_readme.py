@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 from tests.house.source import ROOT
 
+import vincula
+
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]
 BLOCK = re.compile(r"^```(?P<info>[^\n]*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -65,6 +67,18 @@ def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     for command in commands:
         result = CliRunner().invoke(cli, shlex.split(command, comments=True)[1:], catch_exceptions=False)
         assert result.exit_code == 0, f"{command}\n{result.output}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_model_files_load(page: Path, tmp_path: Path) -> None:
+    """A yaml block begins with its file name; later ones may build on earlier ones."""
+    for line, text in blocks(page, "yaml"):
+        file = tmp_path / text.split("\n", 1)[0].removeprefix("# ")
+        file.write_text(text, encoding="utf-8")
+        mechanism = vincula.load(file)
+        if mechanism.reference is not None:
+            vincula.analyze(mechanism.linearize(), vincula.Weights())
+        assert mechanism.bodies, f"line {line}"
 
 
 def test_blocks_are_found() -> None:
