@@ -6,21 +6,30 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 from tests.laws.planted import Matrix, Planted, model, planted
+from tests.laws.planted_peers import (
+    UNITS,
+    compare,
+    gentle,
+    inverse,
+    no_larger,
+    nonzero,
+    null,
+    random_matrix,
+    same_space,
+    same_values,
+    small,
+    without,
+)
 
 from vincula.analysis.equilibrium import ForceBlocks, force_blocks
-from vincula.analysis.manipulability import ellipsoid_of_kind
 from vincula.analysis.maps import torque_from_wrench, twist_from_rates
 from vincula.analysis.mobility import MotionBlocks, motion_blocks
+from vincula.analysis.recipes import ellipsoid_of_kind
 from vincula.analysis.relation import force_relation
 from vincula.analysis.spectrum import spectrum
 from vincula.numerics.metric import Metric, identity_metric
-from vincula.numerics.subspaces import projector_distance
 from vincula.weights import Weights
 
-TIGHT = 1e-9
-"""Subspaces and efficiencies of mechanisms with singular values down to 1e-3, from 1e-15 data."""
-UNITS = 1e-7
-"""The same where motor units over six orders lower the smallest singular values."""
 Law = Callable[[Planted, np.random.Generator], Iterator[str]]
 
 
@@ -34,7 +43,7 @@ def counts_and_dimensions(p: Planted, rng: np.random.Generator) -> Iterator[str]
         ellipsoid_of_kind(kind, p.model, _EXPLICIT) for kind in ("passive force", "active force")
     )
     nullity = c["ar"] + c["pr"] + c["oi"] + 2 * c["t"] + c["ap"] + c["ao"] + c["po"] + c["g"]
-    yield from _compare(
+    yield from compare(
         {
             "counts": (ledger.counts.as_dict(), c),
             "status": (ledger.status, "certain"),
@@ -61,7 +70,7 @@ def counts_and_dimensions(p: Planted, rng: np.random.Generator) -> Iterator[str]
 def blocks_of_motion(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Blocks satisfy (1), have their dimensions, and together span all motions."""
     c, blocks = p.counts, motion_blocks(p.model)
-    yield from _compare(
+    yield from compare(
         {
             "active_redundancy": (blocks.active_redundancy.count, c["ar"]),
             "passive_redundancy": (blocks.passive_redundancy.count, c["pr"]),
@@ -74,7 +83,7 @@ def blocks_of_motion(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     )
     yield from (f"{b.name}: residual {b.residual}" for b in blocks if b.residual > 1e-13)
     whole = _stacked(blocks)
-    yield from _same_space("all motions", whole, p.kernel)
+    yield from same_space("all motions", whole, p.kernel)
     n_a, n_p = p.active.shape[1], p.passive.shape[1]
     rows = {"q_a": slice(0, n_a), "q_p": slice(n_a, n_a + n_p), "u": slice(n_a + n_p, None)}
     inside = {
@@ -83,8 +92,8 @@ def blocks_of_motion(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     }
     for name, parts in inside.items():
         found = np.hstack([_column(part) for part in parts])
-        kernel = p.kernel @ _null(p.kernel[rows[name]])
-        yield from _same_space(f"{{{name} = 0}}", found, kernel)
+        kernel = p.kernel @ null(p.kernel[rows[name]])
+        yield from same_space(f"{{{name} = 0}}", found, kernel)
 
 
 def blocks_of_force(p: Planted, rng: np.random.Generator) -> Iterator[str]:
@@ -92,7 +101,7 @@ def blocks_of_force(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     wrench, torque = _random_metric(p.member.shape[1], rng), _random_metric(p.active.shape[1], rng)
     blocks = force_blocks(p.model, wrench, torque)
     c = p.counts
-    yield from _compare(
+    yield from compare(
         {
             "internal": (blocks.internal.count, c["a"]),
             "transmitted": (blocks.transmitted.count, c["ao"] + c["g"]),
@@ -104,41 +113,41 @@ def blocks_of_force(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     across = blocks.structural.wrench.T @ wrench.matrix @ blocks.transmitted.wrench
     squeeze = blocks.internal.torque.T @ torque.matrix @ blocks.transmitted.torque
     size = 1.0 + np.abs(blocks.transmitted.wrench).max(initial=0.0)
-    yield from _small("structural against transmitted", across / size)
-    yield from _small("internal against transmitted", squeeze)
-    yield from _same_space("all equilibria", _forces(blocks), _null(p.passive.T))
+    yield from small("structural against transmitted", across / size)
+    yield from small("internal against transmitted", squeeze)
+    yield from same_space("all equilibria", _forces(blocks), null(p.passive.T))
     yield from _virtual_work(p, blocks)
 
 
 def efficiencies_of_the_paper(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Finite efficiencies are the generalised eigenvalues of (8), (11)-(13), computed apart."""
-    twist, rate = _random_matrix(p.member.shape[1], rng), _random_matrix(p.active.shape[1], rng)
+    twist, rate = random_matrix(p.member.shape[1], rng), random_matrix(p.active.shape[1], rng)
     found = ellipsoid_of_kind("kinematic", p.model, Weights(rate=rate, twist=twist)).finite
     n_a, n_p = p.active.shape[1], p.passive.shape[1]
     q, u = p.kernel[:n_a], p.kernel[n_a + n_p :]
     # Worst case over indeterminacy, best over redundancy: remove both in their metrics.
-    u_left = _without(np.linalg.cholesky(twist).T @ u, np.linalg.cholesky(twist).T @ u @ _null(q))
-    q_left = _without(np.linalg.cholesky(rate).T @ q, np.linalg.cholesky(rate).T @ q @ _null(u))
-    gain = u_left @ _inverse(q_left)
+    u_left = without(np.linalg.cholesky(twist).T @ u, np.linalg.cholesky(twist).T @ u @ null(q))
+    q_left = without(np.linalg.cholesky(rate).T @ q, np.linalg.cholesky(rate).T @ q @ null(u))
+    gain = u_left @ inverse(q_left)
     values = np.linalg.svd(gain, compute_uv=False) ** 2 if gain.size else np.empty(0)
-    yield from _same_values("kinematic efficiencies", found, values[: len(found)])
-    yield from _small("further efficiencies", values[len(found) :])
+    yield from same_values("kinematic efficiencies", found, values[: len(found)])
+    yield from small("further efficiencies", values[len(found) :])
 
 
 def duality(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Force spectra, computed by themselves, are reciprocal to the kinematic one; so are the maps."""
     d, n_a = p.member.shape[1], p.active.shape[1]
-    weights = Weights(rate=_random_matrix(n_a, rng), twist=_random_matrix(d, rng), reciprocal=True)
+    weights = Weights(rate=random_matrix(n_a, rng), twist=random_matrix(d, rng), reciprocal=True)
     motions = ellipsoid_of_kind("kinematic", p.model, weights)
     wrench, torque = weights.metric("wrench", p.model), weights.metric("torque", p.model)
     apart = spectrum(force_relation(p.model), wrench, torque)
-    yield from _same_values("dual", apart.ratios[::-1] ** 2, 1.0 / motions.finite)
+    yield from same_values("dual", apart.ratios[::-1] ** 2, 1.0 / motions.finite)
     for kind in ("active force", "passive force", "dual force"):
         forces = ellipsoid_of_kind(kind, p.model, weights)
-        yield from _same_values(kind, forces.finite[::-1], 1.0 / motions.finite)
+        yield from same_values(kind, forces.finite[::-1], 1.0 / motions.finite)
     passive = ellipsoid_of_kind("passive force", p.model, weights)
     lines = [w for w, c in zip(passive.task_directions, passive.classes, strict=True) if c == "infinite"]
-    yield from _same_space("structural wrenches", np.array(lines).reshape(len(lines), d).T, apart.infinite)
+    yield from same_space("structural wrenches", np.array(lines).reshape(len(lines), d).T, apart.infinite)
     if p.model.ledger.summary.indeterminacy == 0:
         rates = twist_from_rates(p.model, weights.metric("twist", p.model), weights.metric("rate", p.model))
         torques = torque_from_wrench(p.model, wrench, torque)
@@ -146,72 +155,72 @@ def duality(p: Planted, rng: np.random.Generator) -> Iterator[str]:
             yield "maps missing"
         else:
             size = 1.0 + float(np.abs(rates.matrix).max(initial=0.0))
-            yield from _small("S + T^T", (torques.matrix + rates.matrix.T) / size)
+            yield from small("S + T^T", (torques.matrix + rates.matrix.T) / size)
 
 
 def invariance(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Mixing rows or passive coordinates, and changing motor units with their metric, changes nothing."""
     d, n_a = p.member.shape[1], p.active.shape[1]
-    twist, rate = _random_matrix(d, rng), _random_matrix(n_a, rng)
+    twist, rate = random_matrix(d, rng), random_matrix(n_a, rng)
     before = ellipsoid_of_kind("kinematic", p.model, Weights(rate=rate, twist=twist))
-    rows, free = _gentle(p.active.shape[0], rng), _gentle(p.passive.shape[1], rng)
+    rows, free = gentle(p.active.shape[0], rng), gentle(p.passive.shape[1], rng)
     units = 10.0 ** rng.integers(-3, 4, n_a)
     changed = model(rows @ p.active * units, rows @ p.passive @ free, rows @ p.member)
     after = ellipsoid_of_kind("kinematic", changed, Weights(rate=rate * np.outer(units, units), twist=twist))
-    yield from _compare(
+    yield from compare(
         {
             "counts": (changed.ledger.counts, p.model.ledger.counts),
             "classes": (after.classes, before.classes),
         }
     )
-    yield from _same_values("efficiencies after mixing", after.finite, before.finite, UNITS)
+    yield from same_values("efficiencies after mixing", after.finite, before.finite, UNITS)
 
 
 def monotony(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Weights scale; heavier rates lower efficiencies; a motor added never raises one; a lock shrinks M."""
     d, n_a = p.member.shape[1], p.active.shape[1]
-    twist, rate = _random_matrix(d, rng), np.diag(10.0 ** rng.uniform(-1, 1, n_a))
+    twist, rate = random_matrix(d, rng), np.diag(10.0 ** rng.uniform(-1, 1, n_a))
     base = ellipsoid_of_kind("kinematic", p.model, Weights(rate=rate, twist=twist)).finite
     scaled = ellipsoid_of_kind("kinematic", p.model, Weights(rate=4.0 * rate, twist=9.0 * twist)).finite
-    yield from _same_values("scaled weights", scaled, base * 9.0 / 4.0)
+    yield from same_values("scaled weights", scaled, base * 9.0 / 4.0)
     push = rng.standard_normal((n_a, 2))
     heavier = ellipsoid_of_kind("kinematic", p.model, Weights(rate=rate + push @ push.T, twist=twist)).finite
-    yield from _no_larger("heavier rates", heavier, base)
+    yield from no_larger("heavier rates", heavier, base)
     if p.passive.shape[1]:
         more = model(np.hstack([p.active, p.passive[:, :1]]), p.passive[:, 1:], p.member)
         wide = np.diag([*np.diag(rate), 1.0])
         finer = ellipsoid_of_kind("kinematic", more, Weights(rate=wide, twist=twist))
         before = ellipsoid_of_kind("kinematic", p.model, Weights(rate=rate, twist=twist))
-        yield from _no_larger("a motor added", _nonzero(finer.efficiencies), _nonzero(before.efficiencies))
+        yield from no_larger("a motor added", nonzero(finer.efficiencies), nonzero(before.efficiencies))
     if n_a:
         locked = model(p.active[:, 1:], p.passive, p.member).ledger.subspaces.motions_and_equilibria[0]
         free = p.model.ledger.subspaces.motions_and_equilibria[0]
         widened = np.vstack([np.zeros(locked.shape[1]), locked])
-        yield from _small("a lock leaves M", widened - free @ (free.T @ widened))
+        yield from small("a lock leaves M", widened - free @ (free.T @ widened))
         largest = ellipsoid_of_kind("kinematic", p.model, _EXPLICIT).efficiencies
         freed = model(p.active[:, 1:], np.hstack([p.passive, p.active[:, :1]]), p.member)
         after = ellipsoid_of_kind("kinematic", freed, _EXPLICIT).efficiencies
-        yield from _no_larger("a joint freed", _nonzero(largest)[:1], _nonzero(after)[:1])
+        yield from no_larger("a joint freed", nonzero(largest)[:1], nonzero(after)[:1])
 
 
 def internal_forces(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     """Squeezing forces: (22)-(23) against plain numpy, with definite weights on all rows."""
-    force = _random_matrix(p.active.shape[0], rng)
-    torque = _random_matrix(p.active.shape[1], rng)
+    force = random_matrix(p.active.shape[0], rng)
+    torque = random_matrix(p.active.shape[1], rng)
     found = ellipsoid_of_kind("internal force", p.model, Weights(contact_force=force, torque=torque))
-    f = _null(np.hstack([p.passive, p.member]).T)
+    f = null(np.hstack([p.passive, p.member]).T)
     tau = -p.active.T @ f
     weigh = np.linalg.cholesky(force).T
-    left = _without(weigh @ f, weigh @ f @ _null(tau))
-    gain = left @ _inverse(np.linalg.cholesky(torque).T @ tau)
+    left = without(weigh @ f, weigh @ f @ null(tau))
+    gain = left @ inverse(np.linalg.cholesky(torque).T @ tau)
     values = np.linalg.svd(gain, compute_uv=False) ** 2 if gain.size else np.empty(0)
-    yield from _compare(
+    yield from compare(
         {
             "infinite": (found.classes.count("infinite"), p.counts["none"]),
             "finite": (found.classes.count("finite"), p.counts["a"]),
         }
     )
-    yield from _same_values("internal efficiencies", found.finite, values[: len(found.finite)])
+    yield from same_values("internal efficiencies", found.finite, values[: len(found.finite)])
 
 
 def positions_only(p: Planted, rng: np.random.Generator) -> Iterator[str]:
@@ -222,10 +231,10 @@ def positions_only(p: Planted, rng: np.random.Generator) -> Iterator[str]:
     part = ellipsoid_of_kind("kinematic", p.model, weights)
     n_p = p.passive.shape[1]
     q, u = p.kernel[:n_a], p.kernel[n_a + n_p :][kept]
-    gain = _without(u, u @ _null(q)) @ _inverse(_without(q, q @ _null(u)))
+    gain = without(u, u @ null(q)) @ inverse(without(q, q @ null(u)))
     rank = np.linalg.matrix_rank
     both, of_q, of_u = rank(np.vstack([q, u]), 1e-8), rank(q, 1e-8), rank(u, 1e-8)
-    yield from _compare(
+    yield from compare(
         {
             "infinite": (part.classes.count("infinite"), int(both - of_q)),
             "zero": (part.classes.count("zero"), int(both - of_u)),
@@ -234,11 +243,11 @@ def positions_only(p: Planted, rng: np.random.Generator) -> Iterator[str]:
         }
     )
     values = np.linalg.svd(gain, compute_uv=False) ** 2 if gain.size else np.empty(0)
-    yield from _same_values("projected", part.finite, values[: len(part.finite)])
+    yield from same_values("projected", part.finite, values[: len(part.finite)])
     wrench, torque = weights.metric("wrench", p.model), weights.metric("torque", p.model)
     forces = spectrum(force_relation(p.model), wrench, torque)
-    yield from _same_values("sectioned", forces.ratios[::-1] ** 2, 1.0 / part.finite)
-    yield from _small("required zeros", forces.task[~kept])
+    yield from same_values("sectioned", forces.ratios[::-1] ** 2, 1.0 / part.finite)
+    yield from small("required zeros", forces.task[~kept])
 
 
 LAWS: tuple[Law, ...] = (
@@ -267,43 +276,12 @@ def broken_laws(seed: int, at_once: int = 2) -> list[str]:
     ]
 
 
-def _compare(pairs: dict[str, tuple[object, object]]) -> Iterator[str]:
-    for name, (got, expected) in pairs.items():
-        if got != expected:
-            yield f"{name}: {got}, expected {expected}"
-
-
-def _small(name: str, values: Matrix) -> Iterator[str]:
-    worst = float(np.abs(values).max(initial=0.0))
-    if worst > TIGHT:
-        yield f"{name}: {worst:.2g}, expected 0"
-
-
-def _same_values(name: str, got: Matrix, expected: Matrix, tolerance: float = TIGHT) -> Iterator[str]:
-    if len(got) != len(expected):
-        yield f"{name}: {len(got)} values, expected {len(expected)}"
-    elif len(got) and float(np.abs(got / expected - 1.0).max()) > tolerance:
-        yield f"{name}: {got}, expected {expected}"
-
-
-def _no_larger(name: str, got: Matrix, bound: Matrix) -> Iterator[str]:
-    for value, limit in zip(got, bound, strict=False):
-        if value > limit * (1.0 + TIGHT):
-            yield f"{name}: {value} above {limit}"
-
-
-def _same_space(name: str, got: Matrix, expected: Matrix) -> Iterator[str]:
-    distance = projector_distance(_orthonormal(got), _orthonormal(expected))
-    if got.shape[1] != expected.shape[1] or distance > TIGHT:
-        yield f"{name}: {got.shape[1]} directions for {expected.shape[1]}, distance {distance:.2g}"
-
-
 def _virtual_work(p: Planted, blocks: ForceBlocks) -> Iterator[str]:
     n_a, n_p = p.active.shape[1], p.passive.shape[1]
     q, u = p.kernel[:n_a], p.kernel[n_a + n_p :]
     scale = 1.0 + max(float(np.abs(b.wrench).max(initial=0.0)) for b in blocks)
     for block in blocks:
-        yield from _small(f"virtual work of {block.name}", (block.torque.T @ q + block.wrench.T @ u) / scale)
+        yield from small(f"virtual work of {block.name}", (block.torque.T @ q + block.wrench.T @ u) / scale)
 
 
 def _stacked(blocks: MotionBlocks) -> Matrix:
@@ -318,48 +296,7 @@ def _forces(blocks: ForceBlocks) -> Matrix:
     return np.hstack([block.contact_force for block in blocks])
 
 
-def _orthonormal(columns: Matrix) -> Matrix:
-    return np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))[0]
-
-
-def _null(matrix: Matrix) -> Matrix:
-    """Kernel by plain numpy; the planted singular values are far above 1e-8."""
-    if 0 in matrix.shape:
-        return np.eye(matrix.shape[1])
-    _, values, right = np.linalg.svd(matrix)
-    return right[int(np.count_nonzero(values > 1e-8 * max(1.0, values[0]))) :].T
-
-
-def _without(block: Matrix, removed: Matrix) -> Matrix:
-    if 0 in removed.shape:
-        return block
-    left, values, _ = np.linalg.svd(removed, full_matrices=False)
-    basis = left[:, values > 1e-8 * max(1.0, values[0])]
-    return block - basis @ (basis.T @ block)
-
-
-def _inverse(matrix: Matrix) -> Matrix:
-    """Pseudo-inverse with an absolute cutoff: the planted singular values are far above 1e-8."""
-    left, values, right = np.linalg.svd(matrix, full_matrices=False)
-    kept = values > 1e-8
-    return (right[kept].T / values[kept]) @ left[:, kept].T
-
-
-def _nonzero(efficiencies: Matrix) -> Matrix:
-    return efficiencies[efficiencies > 0.0]
-
-
-def _random_matrix(size: int, rng: np.random.Generator) -> Matrix:
-    root = _gentle(size, rng)
-    return root @ root.T
-
-
 def _random_metric(size: int, rng: np.random.Generator) -> Metric:
-    weights = Weights(rate=_random_matrix(size, rng))
+    weights = Weights(rate=random_matrix(size, rng))
     columns = model(np.zeros((0, size)), np.zeros((0, 0)), np.zeros((0, 1)))
     return weights.metric("rate", columns) if size else identity_metric(0)
-
-
-def _gentle(size: int, rng: np.random.Generator) -> Matrix:
-    left, right = (np.linalg.qr(rng.standard_normal((size, size)))[0] for _ in range(2))
-    return left * 3.0 ** rng.uniform(-1.0, 1.0, size) @ right

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from vincula.analysis.ellipsoid import Ellipsoid
-from vincula.analysis.manipulability import ellipsoid_of_kind, resolved_weights
+from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights
 from vincula.analysis.vectorset import VectorSet
 from vincula.arrays import Matrix, Vector
 from vincula.errors import MixedUnitsError, ModelError

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from vincula.arrays import Matrix
-from vincula.numerics.lapack import pivots
 from vincula.numerics.rank import negligible
+from vincula.numerics.subspaces import leading_rows
 
 
 def localised(basis: Matrix, preferred: slice | None = None, doubt: float = 0.0) -> Matrix:
@@ -26,7 +26,7 @@ def localised(basis: Matrix, preferred: slice | None = None, doubt: float = 0.0)
     if k == 0:
         return basis
     rows = np.arange(basis.shape[0])[preferred or slice(None)]
-    chosen = rows[pivots(basis[rows].T)[:k]]
+    chosen = rows[leading_rows(basis[rows], k)]
     simple = basis @ np.linalg.inv(basis[chosen])
     simple = simple / np.abs(simple).max(axis=0)
     clean = [[0.0 if negligible(abs(x), 1.0, doubt) else x for x in row] for row in simple.tolist()]

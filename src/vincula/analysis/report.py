@@ -11,7 +11,7 @@ from vincula.analysis.diagnosis import contradictions
 from vincula.analysis.doubt import doubt_messages
 from vincula.analysis.ellipsoid import Ellipsoid
 from vincula.analysis.equilibrium import balances_every_wrench
-from vincula.analysis.manipulability import motor_quantity, motor_units, task_quantity
+from vincula.analysis.recipes import motor_quantity, motor_units, task_quantity
 from vincula.analysis.wording import components
 from vincula.arrays import Vector
 from vincula.model import LinearModel

@@ -13,9 +13,9 @@ from vincula.analysis.diagnosis import verdicts
 from vincula.analysis.doubt import doubt_messages, mixed_units_message
 from vincula.analysis.ellipsoid import Convention, Ellipsoid, Kind, Viewpoint
 from vincula.analysis.equilibrium import ForceBlocks, force_blocks
-from vincula.analysis.manipulability import ellipsoid_of_kind, resolved_weights, task_quantity
 from vincula.analysis.maps import LinearMap, torque_from_wrench, twist_from_rates
 from vincula.analysis.mobility import MotionBlocks, motion_blocks
+from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights, task_quantity
 from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
 from vincula.numerics.ledger import RankLedger

@@ -17,6 +17,9 @@ from vincula.numerics.lapack import qr_full, svd
 if TYPE_CHECKING:
     from vincula.numerics.ledger import MatrixName, RankLedger
 
+TIE = 1e-6
+"""Rows that stick out equally to this much count as equal: the first one leads."""
+
 
 def kernel(matrix: Matrix, rank: int) -> Matrix:
     """Orthonormal basis of the kernel, n x (n - rank)."""
@@ -45,6 +48,34 @@ def complement(space: Matrix, inside: Matrix, count: int) -> Matrix:
 def span(columns: Matrix, rank: int) -> Matrix:
     """Orthonormal basis of the range of `columns`, n x rank."""
     return svd(columns)[0][:, :rank]
+
+
+def leading_rows(basis: Matrix, count: int) -> list[int]:
+    """Independent rows, each the first of those that stick out most beside the ones before.
+
+    Depends on the subspace only, not on its basis.
+    """
+    left = np.array(basis)
+    chosen: list[int] = []
+    for _ in range(count):
+        lengths = np.linalg.norm(left, axis=1)
+        lengths[chosen] = 0.0
+        chosen.append(int(np.argmax(lengths >= (1.0 - TIE) * lengths.max())))
+        direction = left[chosen[-1]] / lengths[chosen[-1]]
+        left = left - np.outer(left @ direction, direction)
+    return chosen
+
+
+def settled(basis: Matrix) -> Matrix:
+    """The orthonormal basis of a subspace that is triangular on its leading rows.
+
+    Settles the freedom of turning inside a subspace: the same for every machine and every algorithm.
+    """
+    count = basis.shape[1]
+    if count < 2:
+        return basis
+    turn = np.linalg.qr(basis[leading_rows(basis, count)].T)[0]
+    return np.asarray(basis @ turn)
 
 
 def transported(basis: Matrix, previous: Matrix) -> Matrix:
