@@ -96,7 +96,7 @@ class DuplicateNameError(ModelError):
 
     def __init__(self, kind: str, name: str) -> None:
         self.kind, self.name = kind, name
-        super().__init__(f"two {kind}s are named {name!r}: every {kind} needs a name of its own")
+        super().__init__(f"two {_plural(kind)} are named {name!r}: every {kind} needs a name of its own")
 
 
 class MixedUnitsError(ModelError):
@@ -154,6 +154,12 @@ class RankAmbiguityWarning(UserWarning):
 
 class MixedUnitsWarning(UserWarning):
     """Unit weights over metres and radians: the result depends on the unit of length."""
+
+
+def _plural(kind: str) -> str:
+    if kind.endswith("axis"):
+        return kind.removesuffix("is") + "es"
+    return kind.removesuffix("y") + "ies" if kind.endswith("y") else f"{kind}s"
 
 
 def listing(names: Iterable[str], most: int = 12) -> str:
