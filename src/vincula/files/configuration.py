@@ -87,7 +87,7 @@ def assignments(text: str) -> dict[str, list[str]]:
         ModelError: Another form, or a name given twice.
     """
     found: dict[str, list[str]] = {}
-    at = 0
+    text, at = text.strip(), 0
     while at < len(text) or not found:
         match = _ASSIGNMENT.match(text, at)
         if match is None:

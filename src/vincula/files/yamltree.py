@@ -154,8 +154,8 @@ class _Reader:
                 return value
         elif _kind(event) == "Scalar" and getattr(event, "tag", None) is None:
             if event.anchor is not None:
-                self._anchors[event.anchor] = (Leaf(str(event.value), *_position(event)), 1)
-            return str(event.value)
+                self._anchors[event.anchor] = (Leaf(_text(event), *_position(event)), 1)
+            return _text(event)
         return self._refuse(event, "expected a plain text as key")
 
     def _alias(self, event: Event) -> Node:
@@ -191,9 +191,17 @@ def _position(event: Event) -> tuple[int, int]:
     return (mark.line + 1, mark.column + 1) if mark is not None else (1, 1)
 
 
+def _text(event: Event) -> str:
+    """The text of a scalar; pairs of surrogates, as JSON escapes them, are one character."""
+    text = str(event.value)
+    if text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text):
+        return text
+    return text.encode("utf-16", "surrogatepass").decode("utf-16", "surrogatepass")
+
+
 def _value(event: Any) -> str | int | float | bool | None:
     """The value of a scalar by the core schema of YAML 1.2, numbers in plain decimal only."""
-    text = str(event.value)
+    text = _text(event)
     if event.style is not None:
         return text
     if text in _NOTHING:
