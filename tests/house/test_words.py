@@ -52,3 +52,15 @@ def test_the_version_is_told_once_and_the_same() -> None:
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {vincula.__version__}\n" in citation
     assert f"## [{vincula.__version__}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_the_recipes_name_files_and_names_that_exist() -> None:
+    """CONTRIBUTING says `room/file.py` and, after it, names that are in that file."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    paths = re.findall(r"`([\w/]+\.py)`", text)
+    assert len(paths) > 15
+    for path in paths:
+        assert any((ROOT / start / path).is_file() for start in ("src/vincula", "src", ".")), path
+    source = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "src").rglob("*.py"))
+    names = re.findall(r"`(_?[A-Z]\w+|_\w+)`", text)
+    assert not [name for name in names if not re.search(rf"\b{name}\b", source) and name != "VINCULA_SHARED"]
