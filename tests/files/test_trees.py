@@ -159,8 +159,9 @@ def test_damaged_files(tmp_path_factory: pytest.TempPathFactory, data: st.DataOb
 
 
 keys = st.sampled_from([
-    "vincula", "space", "units", "bodies", "frames", "joints", "contacts", "closures", "couplings", "motors", 
-    "lock", "reference", "weights", "configuration", "keyframes", "precision", "notes", "parameters", "name", "base",
+    "vincula", "space", "units", "bodies", "frames", "joints", "contacts", "closures", "couplings", "motors",
+    "lock", "reference", "weights", "configuration", "keyframes", "precision", "notes", "parameters", "name",
+    "base",
 ])  # fmt: skip
 
 
