@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import signal
 import sys
 import traceback
@@ -123,8 +124,15 @@ def cli() -> None:
     """The command `vincula`."""
 
 
+ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""Switches of the linear algebra libraries."""
+
+
 def main() -> None:
     """The console script."""
+    for switch in ONE_THREAD:
+        # Matrices are small: more threads cost time on a busy machine and could change last digits.
+        os.environ.setdefault(switch, "1")
     if hasattr(signal, "SIGPIPE"):
         # `vincula ... | head` ends quietly, like every other tool.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
