@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vincula.arrays import Vector, checked, frozen
-from vincula.errors import UnknownNameError, WeightError, listing
+from vincula.errors import NonFiniteError, ShapeError, UnknownNameError, WeightError, listing
 from vincula.spatial.space import Space
 
 if TYPE_CHECKING:
@@ -187,7 +187,10 @@ def _checked_numbers(spec: object, name: str) -> Vector:
     dimensions = np.ndim(np.asarray(spec, dtype=object)) if not isinstance(spec, np.ndarray) else spec.ndim
     if dimensions > 2:
         raise WeightError(f"weight {name} has {dimensions} dimensions: give numbers or a square matrix")
-    array = checked(spec, f"weight {name}", (None,) * dimensions)  # type: ignore[arg-type]
+    try:
+        array = checked(spec, f"weight {name}", (None,) * dimensions)  # type: ignore[arg-type]
+    except (NonFiniteError, ShapeError) as problem:
+        raise WeightError(f"{problem}; weights are zero (ignored) or positive numbers") from None
     if dimensions == 2 and array.shape[0] != array.shape[1]:
         raise WeightError(f"weight {name} has shape {array.shape}: a matrix of weights must be square")
     if dimensions < 2:
