@@ -11,9 +11,7 @@ from tests.laws.motion_spaces import (
     apart,
     assert_same_numbers,
     assert_same_relation,
-    equilibria,
     motions,
-    relation,
 )
 from tests.laws.random_mechanisms import Drawn, random_drawn, random_mechanism
 
@@ -23,62 +21,6 @@ from vincula.mechanism.parts import GROUND, Cut
 from vincula.spatial.poses import Pose
 from vincula.spatial.space import PLANAR
 from vincula.spatial.twists import block_rotation, transport
-
-
-@IN_BLOCKS
-def test_ranks_and_spaces_are_those_of_plain_numpy(block: range) -> None:
-    def law(seed: int, rng: np.random.Generator) -> None:
-        model = model_of(seed)
-        counts, summary = model.ledger.counts, model.ledger.summary
-        whole = motions(model)
-        motors = [c.name for c in model.motors]
-        passives = [c.name for c in model.passives]
-        twist = [f"u.{c}" for c in model.twist_components]
-        assert model.ledger.status == "certain"
-        assert whole.basis.shape[1] == summary.mobility
-        assert all(getattr(counts, name) >= 0 for name in counts.__slots__)
-
-        def still(*names: str) -> int:
-            """Dimension of the motions in which these rows are at rest."""
-            held = whole.of(names)
-            return (
-                whole.basis.shape[1] - int(np.linalg.matrix_rank(held, tol=1e-9))
-                if names
-                else whole.basis.shape[1]
-            )
-
-        free_passives = still(*motors, *twist)
-        assert free_passives == summary.passive_redundancy
-        assert still(*twist) - free_passives == summary.redundancy
-        assert still(*motors) - free_passives == summary.indeterminacy
-        rank_of = {rows: summary.mobility - still(*names) for rows, names in (("q", motors), ("u", twist))}
-        assert len(motors) - rank_of["q"] == summary.internal_torques
-        assert len(twist) - rank_of["u"] == summary.structural_wrenches
-        forces = np.hstack([model.scaled.active, model.scaled.passive, model.scaled.member])
-        rank = int(np.linalg.matrix_rank(forces, tol=1e-9)) if forces.size else 0
-        assert len(model.rows) - rank == summary.static_indeterminacy
-        assert len(passives) + len(motors) == len(model.columns)
-
-    hold(block, law)
-
-
-@IN_BLOCKS
-def test_equilibria_are_the_annihilator_of_motions(block: range) -> None:
-    """(15) by itself, from its own kernel, gives exactly what does no work on any motion."""
-
-    def law(seed: int, rng: np.random.Generator) -> None:
-        model = model_of(seed)
-        m, f = relation(model), equilibria(model)
-        assert np.abs(m.T @ f).max(initial=0.0) < 1e-9
-        left = np.linalg.matrix_rank(m, tol=1e-9) if m.size else 0
-        right = np.linalg.matrix_rank(f, tol=1e-9) if f.size else 0
-        assert left + right == len(model.motors) + model.dimension
-        own_motions, own_forces = model.ledger.subspaces.motions_and_equilibria
-        sign = np.r_[np.ones(len(model.motors)), np.ones(model.dimension)]
-        assert apart(m, sign[:, None] * own_motions) < 1e-6
-        assert apart(f, sign[:, None] * own_forces) < 1e-6
-
-    hold(block, law)
 
 
 @IN_BLOCKS

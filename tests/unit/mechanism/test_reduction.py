@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from tests.unit.mechanism.five_bar import cuts_of, five_bar, summary
 
 import vincula as vc
