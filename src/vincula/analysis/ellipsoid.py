@@ -39,6 +39,8 @@ class Ellipsoid:
         task_weight: Metric of the task side.
         motor_weight: Metric of the motor side.
         set: The set of twists, wrenches or contact forces that a unit of motor effort gives.
+        angle_error: How far the uncertainties of the model (rounding, closure, digits, tolerance) may
+            turn the relation in the metrics [rad]; see `bounds`.
         weights_chosen: False when nobody chose the weights.
         viewpoint: efficiency (Yoshikawa) or accuracy (Salisbury and Craig); changes no number.
         convention: invariant, or printed for the regression against the paper.
@@ -56,6 +58,7 @@ class Ellipsoid:
     task_weight: Metric
     motor_weight: Metric
     set: VectorSet
+    angle_error: float = 0.0
     weights_chosen: bool = True
     viewpoint: Viewpoint = "efficiency"
     convention: Convention = "invariant"
@@ -69,6 +72,33 @@ class Ellipsoid:
     def finite(self) -> Vector:
         """The finite efficiencies above zero, descending."""
         return self.efficiencies[[c == "finite" for c in self.classes]]
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float], ...]:
+        """Smallest and largest value of every efficiency within the uncertainties of the model.
+
+        An efficiency is tan^2 of an angle between the relation and the motors; the angle is known to
+        `angle_error`.  Infinite and zero ones are decided by rank and have no range of their own.
+        """
+        return tuple(
+            (_turned(value, -self.angle_error), _turned(value, self.angle_error))
+            if kind == "finite"
+            else (float(value), float(value))
+            for value, kind in zip(self.efficiencies, self.classes, strict=True)
+        )
+
+    @property
+    def clusters(self) -> tuple[tuple[int, ...], ...]:
+        """Indices of efficiencies that cannot be told apart: inside a cluster directions are free to turn."""
+        found: list[list[int]] = []
+        bounds = self.bounds
+        for i, kind in enumerate(self.classes):
+            same = found and self.classes[found[-1][-1]] == kind
+            if same and (kind != "finite" or bounds[i][1] >= bounds[found[-1][-1]][0]):
+                found[-1].append(i)
+            else:
+                found.append([i])
+        return tuple(tuple(cluster) for cluster in found)
 
     @property
     def best(self) -> int:
@@ -133,3 +163,15 @@ class Ellipsoid:
         if not defined:
             raise ModelError(f"the {self.kind} ellipsoid has no direction: nothing moves or pushes")
         return defined[0] if first else defined[-1]
+
+
+def _turned(efficiency: float, error: float) -> float:
+    """tan^2 of the angle of an efficiency, turned by an error within 0 and 90 degrees."""
+    root = float(np.sqrt(efficiency))
+    # Above 45 degrees the complement of the angle has the digits.
+    small = min(root, 1.0 / root)
+    angle = np.arctan(small) + (error if root <= 1.0 else -error)
+    tangent = float(np.tan(max(angle, 0.0))) if angle < np.pi / 2.0 else float("inf")
+    if root <= 1.0:
+        return tangent**2
+    return float("inf") if tangent == 0.0 else tangent**-2

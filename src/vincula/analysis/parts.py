@@ -140,6 +140,7 @@ def _decided_counts(
             ("motors", motor, rows_motor, relation.infinite),
         )
     )
+    both = max(both, of_task, of_motor)
     return both - of_motor, both - of_task, k - both
 
 

@@ -147,6 +147,7 @@ def _assembled(
         task_weight=task,
         motor_weight=motor,
         set=VectorSet(components, units, axes, _unit(lines), doubt),
+        angle_error=min(float(np.pi / 2.0), doubt * _magnification(model, task, motor)),
         weights_chosen=chosen,
         viewpoint=viewpoint,
         convention=convention,
@@ -166,6 +167,16 @@ def _components(model: LinearModel, kind: Kind) -> tuple[tuple[str, ...], tuple[
         names = tuple(row.name for row in model.rows)
         return names, tuple("N" if row.linear else "N m" for row in model.rows)
     return model.wrench_components, model.wrench_units
+
+
+def _magnification(model: LinearModel, task: Metric, motor: Metric) -> float:
+    """How much scaling and weights may magnify an angle: the spread of their sizes."""
+    length = model.length or 1.0
+    spread = max(length, 1.0 / length)
+    if task.unit and motor.unit:
+        return spread
+    sizes = [np.linalg.norm(part) for metric in (task, motor) for part in (metric.factor, metric.inverse)]
+    return spread * float(max(sizes[0], sizes[2]) * max(sizes[1], sizes[3]))
 
 
 def _unit(columns: Matrix) -> Matrix:

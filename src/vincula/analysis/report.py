@@ -146,6 +146,8 @@ def _ellipsoid(ellipsoid: Ellipsoid) -> dict[str, Any]:
         "classes": list(ellipsoid.classes),
         "task_directions": [_vector(d) for d in ellipsoid.task_directions],
         "motor_directions": [_vector(d) for d in ellipsoid.motor_directions],
+        "bounds": [[_number(low), _number(high)] for low, high in ellipsoid.bounds],
+        "clusters": [list(cluster) for cluster in ellipsoid.clusters],
         "weights": {
             task_quantity(ellipsoid.kind): _weight(ellipsoid.task_weight),
             motor_quantity(ellipsoid.kind): _weight(ellipsoid.motor_weight),

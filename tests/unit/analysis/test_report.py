@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from tests.paper.matrices import five_bar
 
 from vincula.analysis.result import analyze
+from vincula.labels import Uncertainty
 from vincula.mechanism.catalog.registry import example
 from vincula.weights import Weights
 
@@ -46,7 +48,7 @@ def test_every_key_of_the_contract(mixed: dict[str, Any]) -> None:
 def test_one_entry_an_efficiency_and_null_where_a_side_rests(mixed: dict[str, Any]) -> None:
     for name in ("kinematic", "active_force", "passive_force", "internal_force", "dual_force"):
         ellipsoid = mixed[name]
-        lengths = {len(ellipsoid[key]) for key in ellipsoid if key != "weights"}
+        lengths = {len(ellipsoid[key]) for key in ellipsoid if key not in ("weights", "clusters")}
         assert len(lengths) == 1
         for kind, value, task, motor in zip(
             ellipsoid["classes"], ellipsoid["efficiencies"], ellipsoid["task_directions"],
@@ -87,6 +89,31 @@ def test_pairs_belong_together_signs_included(paper: dict[str, Any]) -> None:
     for i in (1, 2):
         pushed = torques @ passive.task_directions[i]
         assert pushed * passive.semi_axes[i] == pytest.approx(passive.motor_directions[i])
+
+
+def test_bounds_hold_and_clusters_are_found() -> None:
+    result = analyze(example("stewart").linearize(), Weights())
+    for value, (low, high) in zip(result.kinematic.efficiencies, result.kinematic.bounds, strict=True):
+        assert low <= value <= high
+        assert high / low - 1.0 < 1e-9
+    assert result.kinematic.clusters == ((0, 1), (2,), (3,), (4, 5))
+    loose = replace(result.model, uncertainty=Uncertainty(tolerance_length=1e-4, tolerance_angle=1e-4))
+    wide = analyze(loose, Weights()).kinematic
+    assert all(high / low - 1.0 > 1e-5 for low, high in wide.bounds)
+
+
+def test_bounds_cover_what_typed_digits_leave_open(rng: np.random.Generator) -> None:
+    """Matrices moved by up to half a digit keep their efficiencies inside the bounds."""
+    model = replace(example("five-bar").linearize(), uncertainty=Uncertainty(digits_length=5e-5))
+    bounds = analyze(model, Weights()).kinematic.bounds
+    for _ in range(20):
+        moved = replace(
+            model,
+            jacobian_active=model.jacobian_active + rng.uniform(-5e-5, 5e-5, model.jacobian_active.shape),
+            jacobian_passive=model.jacobian_passive + rng.uniform(-5e-5, 5e-5, model.jacobian_passive.shape),
+        )
+        for value, (low, high) in zip(analyze(moved, Weights()).kinematic.efficiencies, bounds, strict=True):
+            assert low <= value <= high
 
 
 def test_numbers_survive_the_file(tmp_path: Path) -> None:
