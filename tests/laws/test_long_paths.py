@@ -1,0 +1,177 @@
+"""Real robots followed for a thousand steps: one branch, loops closed throughout.
+
+That no step jumps to another branch is checked by something the follower does not use: closed-form
+solutions of the five-bar and the Delta, and for the Stewart platform the sign of the determinant of
+its leg lines, for the Cassie-like leg the side on which each rod pulls, written by hand.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.unit.mechanism.linkages import five_bar, five_bar_o3, joint_point
+
+import vincula as vc
+from vincula.mechanism.catalog import example
+
+STEPS = 1000
+TIGHT = 1e-12
+
+
+def _residual(mechanism: vc.Mechanism, q: vc.Configuration) -> float:
+    return max(r.gap for r in mechanism.residuals(q))
+
+
+def _round(amplitudes: np.ndarray, phases: np.ndarray) -> np.ndarray:
+    """A closed curve of motor displacements, steps + 1 by motors, beginning and ending at zero."""
+    turn = np.linspace(0.0, 2 * np.pi, STEPS + 1)[:, None]
+    return amplitudes * (np.sin(turn + phases) - np.sin(phases))
+
+
+def test_five_bar() -> None:
+    mechanism = five_bar()
+    curve = _round(np.array([0.2, 0.15]), np.array([2.5, 1.0]))
+    path = mechanism.follow([{"o1": a, "o5": b} for a, b in curve])
+    assert path.complete
+    assert len(path) == STEPS + 1
+    for q, (a, b) in zip(path, curve, strict=True):
+        assert _residual(mechanism, q) < TIGHT
+        np.testing.assert_allclose(joint_point(mechanism, q, "o3"), five_bar_o3(a, b), atol=TIGHT)
+
+
+@pytest.mark.slow
+def test_delta() -> None:
+    mechanism = example("delta")
+    curve = _round(np.array([0.35, 0.3, 0.25]), np.array([0.0, 2.0, 4.0]))
+    path = mechanism.follow([dict(zip(("a1", "a2", "a3"), row, strict=True)) for row in curve])
+    assert path.complete
+    for q, row in zip(path, curve, strict=True):
+        assert _residual(mechanism, q) < TIGHT
+        pose = mechanism.body_poses(q)["platform"]
+        np.testing.assert_allclose(pose.rotation, np.eye(3), atol=TIGHT)
+        assert mechanism.reference is not None
+        centre = pose.apply(mechanism.reference.origin)
+        np.testing.assert_allclose(centre, _delta_centre(row), atol=1e-11)
+
+
+def _delta_centre(angles: np.ndarray) -> np.ndarray:
+    """Lower intersection of three spheres about the elbows, moved by the platform's radius."""
+    base, platform, arm, rod, down = 0.2, 0.06, 0.2, 0.5, math.radians(30)
+    centres = []
+    for leg, angle in enumerate(angles):
+        turn = 2 * math.pi * leg / 3
+        out = np.array([math.cos(turn), math.sin(turn), 0.0])
+        # a positive angle about the tangent of the circle turns the arm down
+        reach = base - platform + arm * math.cos(down + angle)
+        centres.append(reach * out - arm * math.sin(down + angle) * np.array([0.0, 0.0, 1.0]))
+    one, two, three = centres
+    x = (two - one) / np.linalg.norm(two - one)
+    along = float(x @ (three - one))
+    y = three - one - along * x
+    aside = float(np.linalg.norm(y))
+    y = y / aside
+    far = float(np.linalg.norm(two - one))
+    px = 0.5 * far
+    py = (along**2 + aside**2 - 2 * along * px) / (2 * aside)
+    pz = math.sqrt(rod**2 - px**2 - py**2)
+    z = np.cross(x, y)
+    ways = [one + px * x + py * y + side * pz * z for side in (1, -1)]
+    return min(ways, key=lambda point: float(point[2]))
+
+
+@pytest.mark.slow
+def test_stewart_platform() -> None:
+    mechanism = example("stewart")
+    motors = mechanism.active
+    home = {name: float(mechanism.home[name][0]) for name in motors}
+    rng = np.random.default_rng(7)
+    curve = _round(rng.uniform(0.05, 0.12, 6), rng.uniform(0, 6, 6))
+    path = mechanism.follow(
+        [{name: home[name] + v for name, v in zip(motors, row, strict=True)} for row in curve]
+    )
+    assert path.complete
+    feet, tops = _stewart_points(mechanism)
+    drawn = np.linalg.norm(tops - feet, axis=1)
+    side = np.sign(_lines(feet, tops, np.zeros(3)))
+    before = np.array([0.0, 0.0, 2.0])
+    for q, row in zip(path, curve, strict=True):
+        assert _residual(mechanism, q) < TIGHT
+        pose = mechanism.body_poses(q)["platform"]
+        now = tops @ pose.rotation.T + pose.position
+        np.testing.assert_allclose(np.linalg.norm(now - feet, axis=1), drawn + row, atol=1e-11)
+        centre = pose.apply(np.array([0.0, 0.0, 2.0]))
+        assert np.sign(_lines(feet, now, centre)) == side
+        assert np.linalg.norm(centre - before) < 0.01
+        before = centre
+    for joint, values in path.end.items():
+        np.testing.assert_allclose(values, mechanism.home[joint], atol=1e-10)
+
+
+def _stewart_points(mechanism: vc.Mechanism) -> tuple[np.ndarray, np.ndarray]:
+    """Ball centres on the ground and contact points on the platform, at home in ground axes."""
+    balls = [joint for joint in mechanism.joints if joint.type == "spherical"]
+    feet = np.array([joint_point(mechanism, mechanism.home, joint.name) for joint in balls])
+    poses = mechanism.body_poses()
+    tops = [(poses[c.second] @ c.frame_on_second).position for c in mechanism.contacts]
+    return feet, np.array(tops)
+
+
+def _lines(feet: np.ndarray, tops: np.ndarray, centre: np.ndarray) -> float:
+    """Determinant of the six Plücker lines of the legs: zero where the platform is free."""
+    ways = tops - feet
+    ways = ways / np.linalg.norm(ways, axis=1)[:, None]
+    return float(np.linalg.det(np.hstack([ways, np.cross(tops - centre, ways)])))
+
+
+@pytest.mark.slow
+def test_cassie_like_leg(models: Path) -> None:
+    """A serial leg with two inner loops; each rod keeps its length and its side of the joint it moves."""
+    robot = vc.load(models / "gepetto_cassie_like" / "robot_nomesh.urdf").with_reference("foot_2")
+    rng = np.random.default_rng(1)  # a posture away from the leg's dead centre at motor_knee = -2.3815
+    start = robot.close({name: rng.uniform(-1, 1) for name, value in robot.home.items() if len(value)})
+    curve = _round(np.full(5, 0.2), np.arange(5.0))
+    motors = robot.active
+    waypoints = [{name: start[name][0] + v for name, v in zip(motors, row, strict=True)} for row in curve]
+    path = robot.follow(waypoints, start=start)
+    assert path.complete, str(path)
+    rods = [
+        ("servo_gauche_half_planta_rode_rev0", "foot_2_half_planta_rode_2_rev0", "free_ankle"),
+        ("tigh_half_hachil_rode_2_rev0", "tarsus_half_hachil_rode_rev0", "free_knee"),
+    ]
+    drawn = [_rod(robot, path[0], *rod) for rod in rods]
+    before = path[0]
+    for q in path:
+        assert _residual(robot, q) < TIGHT
+        for rod, (length, lever) in zip(rods, drawn, strict=True):
+            now, pull = _rod(robot, q, *rod)
+            assert now == pytest.approx(length, abs=1e-11)
+            assert pull * lever > 0.0
+        assert abs(q["free_knee"][0] - before["free_knee"][0]) < 0.02
+        before = q
+
+
+def _rod(robot: vc.Mechanism, q: vc.Configuration, one: str, two: str, hinge: str) -> tuple[float, float]:
+    """Length between two ball centres, and the moment arm of that line about a hinge (signed)."""
+    poses = robot.body_poses(q)
+    joint = robot.joint[hinge]
+    frame = poses[joint.first] @ joint.frame_on_first
+    end = joint_point(robot, q, two)
+    way = end - joint_point(robot, q, one)
+    return float(np.linalg.norm(way)), float(frame.rotation[:, 2] @ np.cross(end - frame.position, way))
+
+
+def test_cassie_like_leg_stops_at_its_dead_centre(models: Path) -> None:
+    """The same angle of the knee from different postures: it belongs to the leg, not to the way there."""
+    robot = vc.load(models / "gepetto_cassie_like" / "robot_nomesh.urdf").with_reference("foot_2")
+    knees = []
+    for hip in (0.0, 0.3):
+        start = robot.close(motors={"motor_hip1": hip})
+        path = robot.follow([{"motor_knee": start["motor_knee"][0] - 0.1}], start=start)
+        assert path.stopped is not None
+        assert [s.kind for s in path.stopped.singularities] == ["motors without authority"]
+        knees.append(float(path.end["motor_knee"][0]))
+    assert knees[0] == pytest.approx(knees[1], abs=1e-8)
+    assert knees[0] == pytest.approx(-2.3815, abs=1e-4)
