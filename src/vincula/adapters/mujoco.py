@@ -5,13 +5,17 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from vincula.errors import MissingExtraError, ModelError, UnknownNameError
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import _All
 from vincula.model import LinearModel
 from vincula.spatial.poses import Pose
+from vincula.weights import Weights
+
+if TYPE_CHECKING:
+    from vincula.adapters.mujoco_actuators import ActuatorJacobian
 
 SOFTNESS = 1e-2
 """How far a simulated loop may be open, times the characteristic length: simulated loops are soft."""
@@ -52,24 +56,91 @@ def linear_model(
         ModelError: No `mujoco.MjModel` and `mujoco.MjData`, or a member that cannot be one.
         MissingExtraError: MuJoCo is not installed.
     """
-    from vincula.adapters.mujoco_softness import closed_where_it_stands
+    mechanism = _prepared(model, data, reference, active, lock, contacts, axes)
+    return _linearized(mechanism, softness)[1]
 
+
+def actuator_jacobian(
+    model: Any,
+    data: Any,
+    body: str,
+    *,
+    hold: Iterable[str] | str = (),
+    springs: Literal["free", "held"] = "free",
+    active: Iterable[str] | str | _All | None = None,
+    contacts: bool = False,
+    axes: Literal["ground", "body"] = "ground",
+    weights: Weights | None = None,
+    softness: float = SOFTNESS,
+) -> ActuatorJacobian:
+    """How the actuators of a simulation move a body and carry a load on it, through all loops.
+
+    Loops, couplings and redundant rows are those of `linear_model`; the two matrices are those of
+    `vincula.analyze`.  A spring is no constraint: the joint it acts on may move (`springs="free"`), or
+    is taken to stand still (`springs="held"`: every sprung joint that no motor drives).
+
+    Args:
+        model: A `mujoco.MjModel`.
+        data: Its `mujoco.MjData`; the configuration is `data.qpos`.
+        body: The body that moves and carries: a body, a site, or `BODY@SITE`.
+        hold: Joints or axes that stand still.
+        springs: Whether joints with a spring and without a motor are free or held.
+        active: Motors, joints or axes that count as motors; by default the actuators of the model.
+        contacts: Whether the touching geoms are contacts, as in `linear_model`.
+        axes: Axes of twist and wrench.
+        weights: Weights for rates or torques that are projected (redundant motors); identity by default.
+        softness: How far a loop may be open, times the characteristic length.
+
+    Raises:
+        UnknownNameError: A name that the model does not have.
+        ClosureError: A loop is open by more than `softness` allows; tells which.
+        UnsupportedFeatureError: An active equality that cannot be represented.
+        ModelError: No `mujoco.MjModel` and `mujoco.MjData`, a member that cannot be one, or another word
+            than free or held.
+        WeightError: A weight that does not fit the motors or the twist.
+        MissingExtraError: MuJoCo is not installed.
+    """
+    if springs not in ("free", "held"):
+        raise ModelError(f"springs is {springs!r}: choose free or held")
+    mechanism = _prepared(model, data, body, active, hold, contacts, axes)
+    from vincula.adapters.mujoco_actuators import jacobian_of, springs_without_motor
+
+    sprung = springs_without_motor(model, mechanism)
+    if springs == "held":
+        mechanism = mechanism.with_lock((*mechanism.lock, *sprung))
+    closed, linear = _linearized(mechanism, softness)
+    return jacobian_of(model, closed, linear, sprung if springs == "free" else (), weights)
+
+
+def _prepared(
+    model: Any,
+    data: Any,
+    reference: str,
+    active: Iterable[str] | str | _All | None,
+    lock: Iterable[str] | str,
+    contacts: bool,
+    axes: Literal["ground", "body"],
+) -> Mechanism:
+    """The mechanism of a simulation with motors, locks, contacts and reference member as asked for."""
     body, frame = _reference(mechanism := simulation(model, data), reference)
     if contacts:
         mechanism = _with_contacts(mechanism, model, data, body)
     mechanism = mechanism.with_lock(lock)
     if active is not None:
         mechanism = mechanism.with_active(active)
-    mechanism = mechanism.with_reference(body, frame=frame, axes=axes)
+    return mechanism.with_reference(body, frame=frame, axes=axes)
+
+
+def _linearized(mechanism: Mechanism, softness: float) -> tuple[Mechanism, LinearModel]:
+    """The mechanism closed where it stands, and its linear model with the gap as uncertainty."""
+    from vincula.adapters.mujoco_softness import closed_where_it_stands
+
     closed, residual, note = closed_where_it_stands(mechanism, softness)
     linear = closed.linearize()
     if not note:
-        return linear
-    return replace(
-        linear,
-        uncertainty=replace(linear.uncertainty, residual=residual),
-        notes=(*linear.notes, note),
-    )
+        return closed, linear
+    uncertainty = replace(linear.uncertainty, residual=residual)
+    return closed, replace(linear, uncertainty=uncertainty, notes=(*linear.notes, note))
 
 
 def simulation(model: Any, data: Any) -> Mechanism:
