@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.blocked import blocked_directions
+from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.kinematics import part_frames
 from vincula.mechanism.mechanism import Mechanism
 from vincula.spatial.poses import rotation_vector
@@ -53,7 +53,9 @@ class LoopProblem:
             first, second = part_frames(joint, poses)
             kind = self.mechanism.type_of(joint)
             blocked = blocked_directions(kind, first, second, joint.lead, joint.second_axis)
-            gaps.extend(g / self.scale if lin else g for g, lin in zip(blocked.gaps, blocked.linear, strict=True))
+            gaps.extend(
+                g / self.scale if lin else g for g, lin in zip(blocked.gaps, blocked.linear, strict=True)
+            )
         for contact in self.mechanism.contacts:
             first, second = part_frames(contact, poses)
             offset = first.rotation.T @ (second.position - first.position) / self.scale
@@ -79,7 +81,9 @@ class LoopProblem:
         result = dict(q)
         for joint in self.loops:
             first, second = part_frames(joint, poses)
-            result[joint.name] = values_between(self.mechanism.type_of(joint), first, second, joint.second_axis)
+            result[joint.name] = values_between(
+                self.mechanism.type_of(joint), first, second, joint.second_axis
+            )
         return result
 
 
@@ -89,10 +93,8 @@ def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.concatenate([[w], v])
 
 
-def close_by_newton(
-    mechanism: Mechanism, rng: np.random.Generator, tolerance: float
-) -> Configuration | None:
-    """A configuration closed to `tolerance` [m], from a random start near home; None if it does not converge."""
+def close_by_newton(mechanism: Mechanism, rng: np.random.Generator, tolerance: float) -> Configuration | None:
+    """A configuration closed to `tolerance` [m], from a random start near home; None if none is found."""
     problem = LoopProblem(mechanism)
     q = {name: np.array(value) for name, value in mechanism.home.items()}
     q = problem.moved(q, rng.normal(0.0, 0.03, problem.size))

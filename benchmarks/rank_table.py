@@ -75,13 +75,17 @@ def stewart(lower: np.ndarray, upper: np.ndarray) -> Mechanism:
         along = upper[k] - lower[k]
         joints += [
             vc.Spherical(f"b{k + 1}", "ground", f"cylinder{k + 1}", at=lower[k]),
-            vc.Prismatic(f"p{k + 1}", f"cylinder{k + 1}", f"rod{k + 1}", axis=along, at=0.5 * (lower[k] + upper[k])),
+            vc.Prismatic(
+                f"p{k + 1}", f"cylinder{k + 1}", f"rod{k + 1}", axis=along, at=0.5 * (lower[k] + upper[k])
+            ),
         ]
         contacts.append(
             vc.Contact(f"c{k + 1}", f"rod{k + 1}", "platform", type="soft-finger", at=upper[k], normal=along)
         )
     reference = vc.Reference("platform", origin=upper.mean(axis=0))
-    return Mechanism.spatial(joints, contacts=contacts, reference=reference, active=[f"p{k + 1}" for k in range(6)])
+    return Mechanism.spatial(
+        joints, contacts=contacts, reference=reference, active=[f"p{k + 1}" for k in range(6)]
+    )
 
 
 def delta(elbow: np.ndarray, wrist: np.ndarray, base: np.ndarray, side: np.ndarray) -> Mechanism:
@@ -282,13 +286,20 @@ def main() -> None:
         for rule, bad in judged.items():
             wrong[case.row][rule] += bad
     width = max(map(len, ROWS))
-    print(f"silently wrong, percent{'':{width - 23}}" + "".join(f"{rule:>15}" for rule in RULES) + f"{'flagged':>10}{'cases':>8}")
+    print(
+        f"silently wrong, percent{'':{width - 23}}"
+        + "".join(f"{rule:>15}" for rule in RULES)
+        + f"{'flagged':>10}{'cases':>8}"
+    )
     for row in ROWS:
         n = max(total[row], 1)
         shares = "".join(f"{100 * wrong[row][rule] / n:15.1f}" for rule in RULES)
         print(f"{row:{width}}{shares}{100 * flagged[row] / n:10.1f}{total[row]:8d}")
     silent = sum(wrong[row]["vincula"] for row in ROWS)
-    print(f"{sum(total.values())} cases ({dict(by_mechanism)}), {time.perf_counter() - start:.0f} s; vincula silently wrong: {silent}")
+    print(
+        f"{sum(total.values())} cases ({dict(by_mechanism)}), {time.perf_counter() - start:.0f} s; "
+        f"vincula silently wrong: {silent}"
+    )
 
 
 if __name__ == "__main__":

@@ -59,7 +59,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--repeats", type=int, default=200)
     repeats = parser.parse_args().repeats
-    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
+    processor = platform.processor() or platform.machine()
+    print(f"{processor}, {os.cpu_count()} cores, Python {platform.python_version()}")
 
     platform_ = vc.load("example:stewart")
     model = platform_.linearize()
@@ -75,8 +76,12 @@ def main() -> None:
         vc.kinematic_ellipsoid(model)
 
     line("Stewart: linearize", measured(platform_.linearize, repeats), 1e-6, "us")
-    line("Stewart: linearize + ledger + five ellipsoids", measured(everything, repeats), 1e-6, "us", "aim 3000")
-    line("Stewart: kinematic ellipsoid of a linear model", measured(kinematic, repeats), 1e-6, "us", "aim 300")
+    line(
+        "Stewart: linearize + ledger + five ellipsoids", measured(everything, repeats), 1e-6, "us", "aim 3000"
+    )
+    line(
+        "Stewart: kinematic ellipsoid of a linear model", measured(kinematic, repeats), 1e-6, "us", "aim 300"
+    )
 
     runs = max(5, repeats // 20)
     python = sys.executable
@@ -90,7 +95,13 @@ def main() -> None:
     line("process: import numpy", numpy, 1e-3, "ms")
     line("process: import numpy, vincula", ours, 1e-3, "ms", f"+{1e3 * (ours[1] - numpy[1]):.0f} ms, aim +60")
     net = numpy[1]
-    line("process: vincula analyze example:five-bar", analyze, 1e-3, "ms", f"{analyze[1] / net:.1f} x numpy, aim 8")
+    line(
+        "process: vincula analyze example:five-bar",
+        analyze,
+        1e-3,
+        "ms",
+        f"{analyze[1] / net:.1f} x numpy, aim 8",
+    )
     line("process: the same with --json", analyze_json, 1e-3, "ms", f"{analyze_json[1] / net:.1f} x numpy")
 
 

@@ -172,7 +172,8 @@ def test_locked_joints(run_json) -> None:
 
 def test_a_configuration_that_stays_closed(run_json) -> None:
     home, turned = (
-        run_json("analyze", "example:serial-2r", *words) for words in ([], ["--at", "shoulder=0.5,elbow=0.25"])
+        run_json("analyze", "example:serial-2r", *words)
+        for words in ([], ["--at", "shoulder=0.5,elbow=0.25"])
     )
     assert home["kinematic"]["efficiencies"] != turned["kinematic"]["efficiencies"]
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+
 from vincula.cli.main import cli
 
 CASES = (
@@ -73,7 +74,7 @@ def arguments(case: dict[str, Any], model: Path, folder: Path) -> list[str]:
     return ["analyze", str(model), "--reference", body, "--at", str(at), *options, "--json"]
 
 
-@pytest.mark.parametrize("name", (*CASES, *URDF_CASES))
+@pytest.mark.parametrize("name", [*CASES, *URDF_CASES])
 def test_agrees_with_the_reference_case(name: str, shared: Path, tmp_path: Path) -> None:
     case = json.loads((shared / "cases" / name / "expected.json").read_text(encoding="utf-8"))
     result = CliRunner().invoke(cli, arguments(case, shared / case["model_file"], tmp_path))
