@@ -302,3 +302,11 @@ def test_a_serial_arm_and_a_lone_body_in_contact_are_legal(tmp_path: Path) -> No
     )
     model = vc.load(write(tmp_path, box)).linearize()
     assert model.grasp.shape == (3, 2)
+
+
+def test_world_is_the_ground_unless_a_body_is_called_so(tmp_path: Path) -> None:
+    text = FIVE_BAR.replace("ground", "world")
+    same_model(vc.load(write(tmp_path, text)).linearize(), five_bar_in_python().linearize())
+    own = vc.load(write(tmp_path, FIVE_BAR.replace("crank", "world") + "bodies: {world: {}}\n"))
+    assert "world" in own.body
+    same_model(own.linearize(), five_bar_in_python().linearize())

@@ -27,8 +27,12 @@ if TYPE_CHECKING:
 
 
 def new_bodies(sketch: Sketch) -> Iterator[tuple[str, Location]]:
-    """Names of bodies that the base does not have, declared ones first, each with its first place."""
+    """Names of bodies that the base does not have, declared ones first, each with its first place.
+
+    A joint to the `world` leads to the ground, unless a body of that name is declared.
+    """
     seen = {GROUND, *(sketch.base.body if sketch.base else ())}
+    seen |= set() if "world" in sketch.entry.bodies else {"world"}
     uses: list[tuple[str, Location]] = [(name, ["bodies", name]) for name in sketch.entry.bodies]
     for key, parts in (("joints", sketch.entry.joints), ("contacts", sketch.entry.contacts)):
         for index, part in enumerate(parts):
@@ -56,12 +60,12 @@ def declare_bodies(sketch: Sketch) -> None:
         at = _origin(sketch, name)
         if entry is not None and entry.at is not None:
             at = position(entry.at, sketch.scale)
-        sketch.attempt(location, partial(sketch.drawing.add, bodies=[DrawnBody(name, at=at)]))
+        _declare(sketch, location, DrawnBody(name, at=at))
     _fix_bodies(sketch, waiting)
 
 
 def _fix_bodies(sketch: Sketch, waiting: dict[str, Location]) -> None:
-    known = {GROUND, *(body.name for body in sketch.drawing.bodies)}
+    known = dict.fromkeys([GROUND, *(body.name for body in sketch.drawing.bodies)])
     while waiting:
         ready = {}
         for name, location in waiting.items():
@@ -70,9 +74,8 @@ def _fix_bodies(sketch: Sketch, waiting: dict[str, Location]) -> None:
                 ready[name] = (location, entry)
         for name, (location, entry) in ready.items():
             at = None if entry.at is None else position(entry.at, sketch.scale)
-            body = DrawnBody(name, entry.fixed_to, at)
-            sketch.attempt(location, partial(sketch.drawing.add, bodies=[body]))
-            known.add(name)
+            _declare(sketch, location, DrawnBody(name, entry.fixed_to, at))
+            known[name] = None
             del waiting[name]
         if not ready:
             break
@@ -82,6 +85,14 @@ def _fix_bodies(sketch: Sketch, waiting: dict[str, Location]) -> None:
             sketch.problem([*location, "fixed_to"], "bodies are fixed to each other in a circle")
         else:
             sketch.unknown([*location, "fixed_to"], "body", str(target), known)
+        _declare(sketch, location, DrawnBody(name))
+
+
+def _declare(sketch: Sketch, location: Location, body: DrawnBody) -> None:
+    """Make a body; one that is refused is made without what was wrong, so that its parts can be read."""
+    sketch.attempt(location, partial(sketch.drawing.add, bodies=[body]))
+    if body.name not in (known.name for known in sketch.drawing.bodies):
+        sketch.drawing.add(bodies=[DrawnBody(body.name)])
 
 
 def _origin(sketch: Sketch, name: str) -> Place | None:
@@ -99,7 +110,8 @@ def add_frame(sketch: Sketch, name: str, entry: FrameEntry) -> None:
     """Add a named frame to the drawing; what is wrong with it is told at its place."""
     location: Location = ["frames", name]
     drawing = sketch.drawing
-    if entry.body not in {GROUND, *(body.name for body in drawing.bodies)}:
+    carrier = drawing.body_name(entry.body)
+    if carrier not in {GROUND, *(body.name for body in drawing.bodies)}:
         bodies = [body.name for body in drawing.bodies]
         sketch.unknown([*location, "body"], "body", entry.body, bodies)
         return
@@ -109,10 +121,8 @@ def add_frame(sketch: Sketch, name: str, entry: FrameEntry) -> None:
 
     def make() -> Frame:
         point = drawing.point(position(entry.at, scale), f"frame {name!r}: at")
-        on_body = drawing.frame_pose(entry.body).inverse() @ Pose.at(
-            point, _axes(drawing, name, entry, scale)
-        )
-        return Frame(name, entry.body, on_body)
+        on_body = drawing.frame_pose(carrier).inverse() @ Pose.at(point, _axes(drawing, name, entry, scale))
+        return Frame(name, carrier, on_body)
 
     frame = sketch.attempt(location, make)
     if frame is not None:

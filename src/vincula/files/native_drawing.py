@@ -139,7 +139,8 @@ def _contacts(sketch: Sketch) -> list[Contact]:
 
 
 def _refuse_ends(sketch: Sketch, location: Location, bodies: Sequence[str]) -> None:
-    if bodies[0] == bodies[1]:
+    first, second = (sketch.drawing.body_name(name) for name in bodies)
+    if first == second:
         sketch.problem([*location, "bodies"], f"got {shown(bodies[0])} twice, expected two different bodies")
 
 
