@@ -94,7 +94,7 @@ class ClosureProblem:
         self.drives = [d for d in mechanism.drives if d.name in set(drives)]
         wanted = {*kept, *_joints_of_axes(mechanism, self.couplings, self.drives)}
         outside = [j for j in mechanism.all_joints if j.name not in tree]
-        own = [j for j in outside if j.name in wanted or j.type == "screw"]
+        own = [j for j in outside if j.type != "fixed" and (j.name in wanted or j.type == "screw")]
         self.dependent = [j for j in outside if not j.closure and j not in own]
         if member:
             own.append(_member_joint(mechanism))
@@ -198,17 +198,19 @@ class ClosureProblem:
         moved = {
             joint.name: motion(kind, state[values], joint.lead, joint.second_axis)
             for joint, kind, values in self.variables.joints
+            if kind.values
         }
         poses = {GROUND: Pose.identity(self.mechanism.space.translations)}
         frames: dict[str, tuple[Pose, Pose]] = {}
         for joint, forward, beyond in self._steps:
+            step = moved.pop(joint.name, None)
             if forward:
                 first = poses[joint.first] @ joint.frame_on_first
-                second = first @ moved.pop(joint.name)
+                second = first if step is None else first @ step
                 poses[joint.second] = second @ beyond
             else:
                 second = poses[joint.second] @ joint.frame_on_second
-                first = second @ moved.pop(joint.name).inverse()
+                first = second if step is None else second @ step.inverse()
                 poses[joint.first] = first @ beyond
             frames[joint.name] = first, second
         for name, motion_of_own in moved.items():

@@ -129,16 +129,17 @@ def motion(kind: JointType, values: Vector, lead: float, second_axis: Vector) ->
         second_axis: Unit vector of a universal joint's second axis in the joint frame.
     """
     s = 2 if kind.planar else 3
-    pose = Pose.identity(s)
+    pose: Pose | None = None
     index = 0
     for step in kind.steps:
         if step == "S":
-            pose = pose @ Pose(rotation_from_quaternion_wxyz(values[index : index + 4]), np.zeros(3))
+            moved = Pose(rotation_from_quaternion_wxyz(values[index : index + 4]), np.zeros(3))
             index += 4
-            continue
-        pose = pose @ _step(step, float(values[index]), s, lead, second_axis)
-        index += 1
-    return pose
+        else:
+            moved = _step(step, float(values[index]), s, lead, second_axis)
+            index += 1
+        pose = moved if pose is None else pose @ moved
+    return Pose.identity(s) if pose is None else pose
 
 
 def _step(step: str, value: float, s: int, lead: float, second_axis: Vector) -> Pose:
