@@ -6,6 +6,7 @@ import pytest
 
 import vincula as vc
 from vincula.files.limits import Limits
+from vincula.files.report import LoadReport
 from vincula.files.source import decode
 from vincula.files.xmltree import parse_xml
 
@@ -58,3 +59,19 @@ def test_limits_are_those_given() -> None:
         parse_xml(source, Limits(xml_bytes=10))
     with pytest.raises(vc.FileError, match="took more than 0 s"):
         parse_xml(decode(b"<a>" + b"<b/>" * 2000 + b"</a>", "f.xml"), Limits(seconds=0.0))
+
+
+def test_comments_with_hyphens_are_skipped_and_reported() -> None:
+    text = '<a>\n<!-- x --- y\n-- --><b/><![CDATA[<!-- -- -->]]><!---->\n<!-- z --->é<c/></a>'
+    report = LoadReport("f.xml", "XML")
+    root = parse_xml(decode(text.encode(), "f.xml"), report=report)
+    b, c = root.children
+    assert (b.line, b.column, c.line, c.column) == (3, 7, 4, 13)
+    assert root.text.split() == ["<!--", "--", "-->", "é"]
+    assert report.counts()["comment"] == {"total": 2, "used": 0, "ignored": 0, "repaired": 2}
+    assert [entry.detail.split(":")[0] for entry in report.entries] == ["line 2", "line 4"]
+
+
+def test_an_unfinished_comment_is_refused_quickly() -> None:
+    with pytest.raises(vc.FileError, match=r"f\.xml:1:11: not well-formed"):
+        parse_xml(decode(b"<a>" + b"<!-- --" * 400_000, "f.xml"))

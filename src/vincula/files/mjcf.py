@@ -42,9 +42,9 @@ def load_mjcf(
         MissingExtraError: MuJoCo is not installed.
     """
     source = path if isinstance(path, Source) else open_source(path, limits)
-    document = read_document(source, limits, roots)
-    check_document(document, limits)
     report = LoadReport(source.file, "MJCF")
+    document = read_document(source, limits, roots, report)
+    check_document(document, limits)
     return _mechanism(document, source, report), report
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from vincula.errors import FileError
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.problems import shown
+from vincula.files.report import LoadReport
 from vincula.files.source import Source, decode, read_bytes, shown_path
 from vincula.files.xmltree import Element, parse_xml, refuse_element
 
@@ -42,7 +43,10 @@ class Document:
 
 
 def read_document(
-    source: Source, limits: Limits = DEFAULT_LIMITS, roots: Sequence[str | Path] = ()
+    source: Source,
+    limits: Limits = DEFAULT_LIMITS,
+    roots: Sequence[str | Path] = (),
+    report: LoadReport | None = None,
 ) -> Document:
     """The document of an MJCF file.
 
@@ -50,25 +54,28 @@ def read_document(
         source: The text of the file.
         limits: Limits on files, elements and includes.
         roots: Further folders that included files may lie in.
+        report: Where repairs of the text are recorded.
 
     Raises:
         FileError: The file or an included one cannot be read, or lies outside the allowed folders.
     """
     folder = source.path.parent if source.path is not None else Path()
-    return _Reader(folder, limits, [folder, *map(Path, roots)]).read(source, ())
+    return _Reader(folder, limits, [folder, *map(Path, roots)], report).read(source, ())
 
 
 class _Reader:
     """Opens files and counts them against the limits."""
 
-    def __init__(self, folder: Path, limits: Limits, roots: Sequence[Path]) -> None:
-        self._folder, self._limits = folder, limits
+    def __init__(
+        self, folder: Path, limits: Limits, roots: Sequence[Path], report: LoadReport | None
+    ) -> None:
+        self._folder, self._limits, self._report = folder, limits, report
         self._roots = [root.resolve() for root in roots]
         self._opened = 0
         self._elements = 0
 
     def read(self, source: Source, chain: tuple[Path, ...]) -> Document:
-        root = parse_xml(source, self._limits)
+        root = parse_xml(source, self._limits, self._report)
         if root.tag != "mujoco":
             refuse_element(root, f"got <{root.tag[:40]}>, expected <mujoco>, the root of an MJCF file")
         document = Document(root, source.file)
@@ -103,7 +110,7 @@ class _Reader:
                 refuse_element(child, f"{shown(included.file)} is included twice; once is allowed")
             seen.add(path)
             document.includes.append(included.file)
-            holder = parse_xml(included, self._limits)
+            holder = parse_xml(included, self._limits, self._report)
             if not holder.children:
                 refuse_element(child, f"{shown(child.attributes['file'])} holds no element")
             self._expand(holder, included, document, seen, depth)

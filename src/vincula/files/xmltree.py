@@ -1,11 +1,13 @@
 """XML to a plain tree that knows where every element stands; the limits hold while it is read.
 
 The document goes to expat in one piece.  Document types (and with them entities, and everything
-external) are refused at their first character.
+external) are refused at their first character.  One fault is tolerated, because many hand-written
+models have it and it changes nothing: a comment with two hyphens inside.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final, NoReturn
@@ -14,6 +16,7 @@ from xml.parsers import expat
 from vincula.errors import FileError
 from vincula.files.limits import DEFAULT_LIMITS, Deadline, Limits
 from vincula.files.problems import Place, shown
+from vincula.files.report import LoadReport
 from vincula.files.source import Source
 
 _CHECK_EVERY: Final = 1024
@@ -81,21 +84,60 @@ class Element:
         return (child for child in self.children if child.tag == tag)
 
 
-def parse_xml(source: Source, limits: Limits = DEFAULT_LIMITS) -> Element:
+def parse_xml(source: Source, limits: Limits = DEFAULT_LIMITS, report: LoadReport | None = None) -> Element:
     """The root element of an XML document.
+
+    Args:
+        source: The text.
+        limits: How much it may hold.
+        report: Where repaired comments are recorded; without it they are repaired in silence.
 
     Raises:
         FileError: Not well-formed, a document type, or over a limit; tells the place.
     """
     source.refuse_larger_than(limits.xml_bytes, "XML file")
-    return _TreeBuilder(source, limits).build()
+    text, lines = without_hyphens(source.text)
+    if report is not None:
+        for line in lines:
+            report.repaired("comment", "", f"line {line}: '--' inside a comment is not XML; it was skipped")
+    return _TreeBuilder(source, text, limits).build()
+
+
+def without_hyphens(text: str) -> tuple[str, list[int]]:
+    """The text with every comment that holds two hyphens blanked, so that lines and columns stay.
+
+    Returns:
+        The text, and the lines on which such comments begin.
+    """
+    pieces: list[str] = []
+    lines: list[int] = []
+    at = done = line = counted = 0
+    while (at := text.find("<", at)) >= 0:
+        close = next((end for begin, end in _VERBATIM if text.startswith(begin, at)), "")
+        if not close:
+            at += 1
+            continue
+        stop = text.find(close, at + (4 if close == "-->" else 2))
+        if stop < 0:
+            break
+        if close == "-->" and ("--" in (body := text[at + 4 : stop]) or body.endswith("-")):
+            pieces += [text[done : at + 4], _INK.sub(" ", body)]
+            line += text.count("\n", counted, at)
+            counted, done = at, stop
+            lines.append(line + 1)
+        at = stop + len(close)
+    return "".join([*pieces, text[done:]]), lines
+
+
+_VERBATIM: Final = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"))
+_INK: Final = re.compile(r"[^\n]")
 
 
 class _TreeBuilder:
     """Expat's handlers."""
 
-    def __init__(self, source: Source, limits: Limits) -> None:
-        self._source, self._limits = source, limits
+    def __init__(self, source: Source, text: str, limits: Limits) -> None:
+        self._source, self._text, self._limits = source, text, limits
         self._deadline = Deadline(source.file, limits)
         self._parser = expat.ParserCreate(encoding="utf-8")
         self._parser.StartElementHandler = self._start
@@ -110,9 +152,12 @@ class _TreeBuilder:
 
     def build(self) -> Element:
         try:
-            self._parser.Parse(self._source.text.encode("utf-8"), True)
+            self._parser.Parse(self._text.encode("utf-8"), True)
         except expat.ExpatError as error:
-            self._refuse(f"{expat.ErrorString(error.code)}{self._unclosed()}", error.lineno, error.offset + 1)
+            line = self._source.text.split("\n", error.lineno)[: error.lineno][-1]
+            template = "; <% ... %> is a template (ERB): expand it first" if "<%" in line else ""
+            reason = f"{expat.ErrorString(error.code)}{template}{self._unclosed()}"
+            self._refuse(reason, error.lineno, error.offset + 1)
         if self._root is None:
             self._refuse("there is no element", 1, 1)
         return self._root
