@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from vincula.cli.exits import BadOptionError
-from vincula.cli.options import active_option, lock_option, output_options, reference_options, set_option
+from vincula.cli.options import (
+    active_option,
+    lock_option,
+    loops_option,
+    output_options,
+    reference_options,
+    set_option,
+)
 from vincula.cli.output import print_json, warnings_on_stderr
 from vincula.errors import FileError
 
@@ -30,6 +37,7 @@ ENDINGS: Final = (".yaml", ".yml", ".json")
 @reference_options
 @lock_option
 @set_option
+@loops_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is there.")
 @output_options
 def convert_command(

@@ -53,6 +53,14 @@ set_option = click.option(
     help="Set a declared parameter of the file or example; units are allowed (alpha=1deg). Repeatable.",
 )
 
+loops_option = click.option(
+    "--loops",
+    multiple=True,
+    metavar="SIDEFILE",
+    help="A file beside a URDF file: loops and motors (Gepetto's robot.yaml) or passive joints (SRDF). "
+    "Repeatable; without it STEM.yaml, robot.yaml and STEM.srdf beside the file are looked for.",
+)
+
 active_option = click.option(
     "--active",
     multiple=True,
@@ -142,5 +150,6 @@ mechanism_options = together(
     at_option,
     lock_option,
     set_option,
+    loops_option,
     tolerance_option,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeVar, cast
@@ -72,6 +72,7 @@ def read_subject(
     axes: str | None,
     at: str | None,
     tolerance: str | None,
+    loops: Sequence[str] = (),
 ) -> Subject:
     """The mechanism of a file with the common options applied.
 
@@ -83,7 +84,10 @@ def read_subject(
     from vincula.files.configuration import read_configuration
     from vincula.files.load import load_with_report
 
-    mechanism, report = _usage("--set" if parameters else "", lambda: load_with_report(file, parameters))
+    def load() -> tuple[Mechanism, LoadReport]:
+        return load_with_report(file, parameters, beside=loops)
+
+    mechanism, report = _usage("--set" if parameters else "", load)
     if lock is not None:
         mechanism = _usage("--lock", lambda: mechanism.with_lock(lock))
     mechanism = with_reference(mechanism, reference, axes)

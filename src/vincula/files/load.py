@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -30,14 +30,16 @@ def load(
     path: str | os.PathLike[str],
     parameters: Mapping[str, float | str] | None = None,
     *,
+    beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
 ) -> Mechanism:
     """The mechanism of a file or an example.
 
     Args:
-        path: A vincula native file (YAML or JSON), an MJCF file, or `example:NAME`.
+        path: A vincula native file (YAML or JSON), a URDF, SDF or MJCF file, or `example:NAME`.
         parameters: New values for declared parameters: numbers in the units of the file (examples: m
             and rad), or texts with a unit such as `"1deg"`.
+        beside: Side files of a URDF file (Gepetto loops, SRDF); by default those found beside it.
         limits: How much a file may hold.
 
     Raises:
@@ -46,20 +48,26 @@ def load(
         ModelError: A parameter that is no number.
         MissingExtraError: MJCF without MuJoCo.
     """
-    return load_with_report(path, parameters, limits=limits)[0]
+    return load_with_report(path, parameters, beside=beside, limits=limits)[0]
 
 
 def load_with_report(
     path: str | os.PathLike[str],
     parameters: Mapping[str, float | str] | None = None,
     *,
+    beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
 ) -> tuple[Mechanism, LoadReport]:
     """As `load`, with the report of everything used, ignored and repaired."""
     file, settings = os.fspath(path), dict(parameters or {})
     if file.startswith(EXAMPLE):
+        if beside:
+            raise FileError(_NO_SIDE_FILES.format(shown(file)))
         return _example(file, settings)
-    loaded = _Loader(settings, limits).load(file)
+    loader = _Loader(settings, limits, beside)
+    loaded = loader.load(file)
+    if beside and not loader.beside_was_read:
+        raise FileError(_NO_SIDE_FILES.format(loaded.report.file))
     for name in settings:
         if name not in loaded.parameters:
             raise UnknownNameError("parameter", name, loaded.parameters)
@@ -83,11 +91,17 @@ def _example(file: str, settings: Mapping[str, float | str]) -> tuple[Mechanism,
     return mechanism, report
 
 
+_NO_SIDE_FILES: Final = "{}: side files (loops, SRDF) belong to URDF files; this is none"
+
+
 class _Loader:
     """Loads a file and the files below it."""
 
-    def __init__(self, settings: Settings, limits: Limits) -> None:
-        self._settings, self._limits = settings, limits
+    def __init__(
+        self, settings: Settings, limits: Limits, beside: Sequence[str | os.PathLike[str]] = ()
+    ) -> None:
+        self._settings, self._limits, self._beside = settings, limits, beside
+        self.beside_was_read = False
         self._above: list[Path] = []
 
     def load(self, file: str) -> Loaded:
@@ -143,7 +157,8 @@ class _Loader:
         if root == "robot":
             from vincula.files.urdf import load_urdf
 
-            return Loaded(*load_urdf(source, self._limits))
+            self.beside_was_read = True
+            return Loaded(*load_urdf(source, self._limits, beside=self._beside))
         if root == "sdf":
             from vincula.files.sdf import load_sdf
 
@@ -165,8 +180,10 @@ def xml_root(source: Source) -> str:
     """Tag of the first element of an XML file; empty when there is none.
 
     Raises:
-        FileError: The file is a xacro that has not been expanded.
+        FileError: The file is a xacro or an ERB template that has not been expanded.
     """
+    if source.text.lstrip().startswith("<%") or source.file.endswith(".erb"):
+        raise FileError(f"{source.file}: got a template (ERB); expand it first: erb -T 1 FILE > model.sdf")
     at = 0
     while (match := _PROLOGUE.match(source.text, at)) is not None:
         at = match.end()
@@ -174,7 +191,8 @@ def xml_root(source: Source) -> str:
     if root is None:
         # Whatever this is, the XML reader says best what is wrong with it.
         return "mujoco" if "<mujoco" in source.text else ""
-    if "xacro" in root[2] or root[1].startswith("xacro:"):
+    unexpanded = "xacro" in root[2] and ("<xacro:" in source.text or "${" in source.text)
+    if unexpanded or root[1].startswith("xacro:"):
         raise FileError(f"{source.file}: got an unexpanded xacro; expand it first: xacro FILE > robot.urdf")
     return root[1]
 

@@ -177,10 +177,7 @@ def joint_values(
     """
     values = JointValues(mechanism, sketch.scale.units)
     for name, numbers in given.items():
-        try:
-            values.put(name, numbers_of(numbers))
-        except ModelError as error:
-            sketch.problem([*location, name], str(error))
+        sketch.attempt([*location, name], partial(values.put, name, numbers_of(numbers)))
     return values
 
 

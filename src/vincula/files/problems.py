@@ -53,6 +53,11 @@ class Problems:
     def __len__(self) -> int:
         return len(self._found) + self._dropped
 
+    @property
+    def full(self) -> bool:
+        """Whether no more problems will be told, so that looking for them is of no use."""
+        return len(self._found) >= self._most
+
     def add(
         self,
         place: Place,
@@ -75,17 +80,17 @@ class Problems:
             choices: The words that would be understood.
             unsupported: The file is right, but vincula cannot represent what it says.
         """
+        self._only_unsupported = self._only_unsupported and unsupported
+        if self.full:
+            self._dropped += 1
+            return
         parts = [message] if message else []
         if got:
             parts.append(f"got {got}")
         if expected:
             parts.append(f"expected {expected}")
         text = f"{place.text()}: {', '.join(parts)}{suggestion(name, choices)}"
-        self._only_unsupported = self._only_unsupported and unsupported
         if text in self._texts:
-            return
-        if len(self._found) >= self._most:
-            self._dropped += 1
             return
         self._texts.add(text)
         self._found.append(((place.line, place.column), text))
@@ -106,8 +111,9 @@ class Problems:
         kind = UnsupportedFeatureError if self._only_unsupported else FileError
         message = texts[0]
         if len(self) > 1:
-            more = f"\n(the first {len(texts)} of {len(self)})" if self._dropped else ""
-            message = f"{self._file}: {len(self)} problems\n" + "\n".join(texts) + more
+            count = f"more than {len(texts)}" if self._dropped else str(len(texts))
+            more = f"\n(the first {len(texts)} are shown)" if self._dropped else ""
+            message = f"{self._file}: {count} problems\n" + "\n".join(texts) + more
         raise kind(message, texts)
 
 

@@ -6,7 +6,7 @@ close loops.  Everything is placed at zero joint values, as those formats define
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -102,9 +102,10 @@ class RobotDraft:
         digits_length: Largest half unit of a typed length [m].
         digits_angle: Largest half unit of a typed angle or direction [rad].
         notes: Facts that the reader of a result must know.
+        when_placed: What can be added only once every link has its drawn pose: called with the poses.
         ground: The link that is the ground; None for the one link that is nobody's child.
-        directed: True where a joint can only place its child (URDF), False where it can place either of
-            its links (SDF).
+        directed: True where a joint places its child (URDF), False where it can place either of its
+            links (SDF).
     """
 
     file: str
@@ -120,6 +121,7 @@ class RobotDraft:
     digits_length: float = 0.0
     digits_angle: float = 0.0
     notes: list[str] = field(default_factory=list)
+    when_placed: list[Callable[[Mapping[str, Pose]], None]] = field(default_factory=list)
     ground: str | None = None
     directed: bool = True
 
@@ -140,15 +142,20 @@ class RobotDraft:
         """
         self._check_names()
         self.problems.refuse_if_any()
-        root = self.ground or self._root()
+        root = self.ground = self.ground or self._root()
         tree = self._tree(root)
         self.problems.refuse_if_any()
+        if self.when_placed:
+            placed = self._poses(root, tree)
+            for add in self.when_placed:
+                add(placed)
+            self._check_names()
+            tree = self._tree(root)
+            self.problems.refuse_if_any()
+        self._note_parents()
         names = {link: link for link in self.links} | {root: GROUND}
         poses = self._poses(root, tree)
-        in_tree = {id(joint) for joint, _ in tree}
-        joints = [
-            j.resolved(j.closure or (self.directed and id(j) not in in_tree), names) for j in self.joints
-        ]
+        joints = [joint.resolved(joint.closure, names) for joint in self.joints]
         frames = [Frame(f.name, names.get(f.body, f.body), f.pose) for f in self.frames]
         if root != WORLD and root not in (frame.name for frame in frames):
             frames.append(Frame(root, GROUND, Pose.identity(3)))
@@ -163,7 +170,6 @@ class RobotDraft:
                 frames=tuple(frames),
                 name=self.name,
                 precision=Precision(self.digits_length, self.digits_angle),
-                notes=tuple(self.notes),
                 motors=motors,
             )
             return mechanism.with_active(list(dict.fromkeys(motors.values())))
@@ -183,6 +189,20 @@ class RobotDraft:
             if joint.parent == joint.child:
                 self.problems.add(
                     joint.place, f"joint {shown(joint.name)} connects {shown(joint.parent)} to itself"
+                )
+
+    def _note_parents(self) -> None:
+        """In URDF a link with two parents is a surprise: most other readers drop one of them."""
+        if not self.directed:
+            return
+        parents: dict[str, list[str]] = {}
+        for joint in self._tree_joints():
+            parents.setdefault(joint.child, []).append(joint.name)
+        for link, names in parents.items():
+            if len(names) > 1:
+                self.notes.append(
+                    f"link {link} is the child of {len(names)} joints ({', '.join(names)}): read as a closed "
+                    "loop, which other readers of URDF files may not do"
                 )
 
     def _tree_joints(self) -> list[DraftJoint]:
@@ -248,8 +268,9 @@ class RobotDraft:
     def _motors(self) -> dict[str, str]:
         """Motors by name; where the file names none, every joint that nothing marks as passive."""
         if self.motors is not None:
-            return self.motors
+            return {name: axis for name, axis in self.motors.items() if axis not in self.passive}
         followers = {axis for coupling in self.couplings for axis in list(coupling.rates)[:1]}
+        followers |= {axis.rpartition(".")[0] for axis in followers}
         moving = [
             j.name
             for j in self.joints

@@ -6,6 +6,7 @@ default that depends on the kind of frame), attachments lead to a link.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -49,6 +50,16 @@ class SdfFrames:
         self._frames[MODEL] = _Frame(Pose.identity(3), "", canonical_link, model.place)
         self._frames[WORLD] = _Frame(raw.inverse(), MODEL, WORLD, model.place)
         self._links.add(WORLD)
+
+    def add_drawn(self, poses: Mapping[str, Pose], root: str) -> None:
+        """Links that have their poses already; the model's frame and the world are the root link's."""
+        for name, pose in poses.items():
+            self._poses[name] = pose
+            self._frames[name] = _Frame(pose, MODEL, name, Place(""))
+            self._links.add(name)
+        for name in (MODEL, WORLD):
+            self._poses.setdefault(name, poses[root])
+            self._frames.setdefault(name, _Frame(Pose.identity(3), root, root, Place("")))
 
     def add_link(self, element: Element, name: str) -> None:
         """A link: by default relative to the model."""

@@ -54,7 +54,12 @@ class Sketch:
         )
 
     def attempt(self, location: Location, action: Callable[[], Result]) -> Result | None:
-        """What the action returns, None when it refuses; the refusal is told at the place."""
+        """What the action returns, None when it refuses; the refusal is told at the place.
+
+        Nothing is tried any more once enough problems are found: every refusal looks for similar names.
+        """
+        if self.document.problems.full:
+            return None
         try:
             return action()
         except ModelError as error:

@@ -10,21 +10,22 @@ import os
 from collections.abc import Sequence
 from typing import Final
 
-import numpy as np
-
-from vincula.files.dialects import loop_readers, reader_of_element
+from vincula.arrays import Vector
+from vincula.files.dialects import reader_of_element, side_files
+from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.problems import Place, Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint, RobotDraft
 from vincula.files.source import Source, open_source
 from vincula.files.urdf_motors import read_transmission
+from vincula.files.urdf_places import origin
 from vincula.files.xmltree import Element, parse_xml
 from vincula.files.xmlvalues import TypedDigits, XmlValues
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import Coupling
 from vincula.mechanism.parts import Limits as JointLimits
-from vincula.spatial.poses import Pose, rotation_from_quaternion_wxyz
+from vincula.spatial.poses import Pose
 
 TYPES: Final = {
     "revolute": "revolute",
@@ -84,10 +85,9 @@ def load_urdf(
         UnsupportedFeatureError: The file holds a loop or a part that cannot be represented.
     """
     source = path if isinstance(path, Source) else open_source(path, limits)
-    root = parse_xml(source, limits)
     reader = UrdfReader(source, limits)
-    reader.read(root)
-    for loops in loop_readers(source, beside, limits):
+    reader.read(parse_xml(source, limits, reader.report))
+    for loops in side_files(source, beside, limits):
         loops.read(reader.draft, reader.values, reader.report)
     mechanism = reader.finish()
     return mechanism, reader.report
@@ -157,12 +157,7 @@ class UrdfReader:
             if part.tag in _LINK_PARTS:
                 self.report.ignored(part.tag, name, _LINK_PARTS[part.tag])
             else:
-                self.problems.add(
-                    part.place,
-                    f"<{part.tag}> is not understood in <link>",
-                    name=part.tag,
-                    choices=_LINK_PARTS,
-                )
+                read_unknown(part, self.draft, self.values, self.report, _LINK_PARTS)
 
     def _joint(self, element: Element) -> None:
         name = self.values.name(element)
@@ -173,47 +168,32 @@ class UrdfReader:
                 choices=TYPES,
             )  # fmt: skip
             return
-        self.values.only(element, (*_READ_IN_JOINT, *_JOINT_PARTS))
+        known = (*_READ_IN_JOINT, *_JOINT_PARTS)
         for part in element.children:
             if part.tag in _JOINT_PARTS:
                 self.report.ignored(part.tag, name, _JOINT_PARTS[part.tag])
+            elif part.tag not in _READ_IN_JOINT:
+                read_unknown(part, self.draft, self.values, self.report, known)
         parent, child = (self.values.child_link(element, tag) for tag in ("parent", "child"))
-        known = [
+        linked = [
             bool(link) and self.draft.has_link(link, element.place, what=f"joint {shown(name)}")
             for link in (parent, child)
         ]
-        origin = self.origin(element)
+        place = origin(element, self.values)
         axis = self._axis(element, written)
         limits = self._limits(element, written)
-        if not (name and all(known) and origin is not None):
+        if not (name and all(linked) and place is not None):
             return
         self.draft.joints.append(
             DraftJoint(
-                name=name, type=TYPES[written], parent=parent, child=child, on_parent=origin,
+                name=name, type=TYPES[written], parent=parent, child=child, on_parent=place,
                 on_child=Pose.identity(3), axis=axis, limits=limits, place=element.place,
             )
         )  # fmt: skip
         self.report.used("joint", name, TYPES[written])
         self._mimic(element, name)
 
-    def origin(self, element: Element) -> Pose | None:
-        """Pose of an optional `<origin>` child; None after a problem."""
-        found = next(element.find_all("origin"), None)
-        if found is None:
-            return Pose.identity(3)
-        given = found.attributes
-        xyz = self.values.numbers(found, given.get("xyz", "0 0 0"), 3, what="xyz", unit="length")
-        if "quat_xyzw" in given:
-            q = self.values.numbers(found, given["quat_xyzw"], 4, what="quat_xyzw", unit="angle")
-            if q is not None and float(np.linalg.norm(q)) < 1e-6:
-                self.problems.add(found.place, got="quat_xyzw of length zero", expected="a unit quaternion")
-                q = None
-            turn = None if q is None else rotation_from_quaternion_wxyz([q[3], q[0], q[1], q[2]])
-        else:
-            turn = self.values.angles(found, given.get("rpy", "0 0 0"), what="rpy")
-        return None if xyz is None or turn is None else Pose.at(xyz, turn)
-
-    def _axis(self, element: Element, written: str) -> np.ndarray | None:
+    def _axis(self, element: Element, written: str) -> Vector | None:
         if written in ("fixed", "floating"):
             return None
         found = next(element.find_all("axis"), None)

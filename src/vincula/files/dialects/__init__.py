@@ -1,5 +1,5 @@
 """Loop conventions of robot files, one module each: what URDF and SDF say in dialects, or beside."""
 
-from vincula.files.dialects.registry import SideFile, loop_readers, reader_of_element
+from vincula.files.dialects.registry import SideFile, reader_of_element, side_files
 
-__all__ = ["SideFile", "loop_readers", "reader_of_element"]
+__all__ = ["SideFile", "reader_of_element", "side_files"]
