@@ -123,7 +123,9 @@ def five_bar_points(rng: np.random.Generator, unit: float, offset: float) -> np.
 
 def hexagon(rng: np.random.Generator, unit: float, offset: float) -> tuple[np.ndarray, np.ndarray]:
     """Stewart platform whose odd and even lower joints coincide up to `offset` (an angle)."""
-    alpha = rng.uniform(-3, 3)
+    # Lifting and turning depend on each other by sin(beta) - sin(alpha), about offset * cos(alpha):
+    # near +-90 degrees an offset of 1e-11 would be below rounding itself, for which no rule can have truth.
+    alpha = rng.choice([0.0, math.pi]) + rng.uniform(-1.2, 1.2)
 
     def triangle(radius: float, turn: float, height: float) -> np.ndarray:
         angle = turn + np.arange(3) * 2 * math.pi / 3
