@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from vincula.arrays import Vector
 from vincula.errors import ModelError, UnknownNameError
 from vincula.files.units import Units
+from vincula.mechanism.configuration import Configuration
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
@@ -85,7 +86,8 @@ class JointValues:
             new = list(numbers)
         else:
             new[index] = numbers[0]
-        self.values[joint.name] = self._mechanism.home.replaced({joint.name: new})[joint.name]
+        alone = Configuration({joint.name: before})
+        self.values[joint.name] = alone.replaced({joint.name: new})[joint.name]
 
     def _refuse_degrees(self, name: str, angle: float) -> None:
         """Angles beyond a full turn under `rad` are degrees by mistake, but for screws, gears and limits."""

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 
-_MOST_COMPARED = 200
-"""Names are compared with at most so many others: comparing takes time."""
+MOST_COMPARED = 200
+"""Slips of the pen are looked for among at most so many names: comparing takes time."""
 
 _DECEIVING = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 
@@ -40,7 +40,5 @@ def similar_name(name: str, others: Iterable[str]) -> str:
     """Another name that differs by a slip of the pen and not by its numbers; empty if there is none."""
     digits = re.sub(r"[^0-9]", "", name)
     alike = [other for other in others if re.sub(r"[^0-9]", "", other) == digits and len(other) > 3]
-    if len(alike) > _MOST_COMPARED:
-        return ""
     near = difflib.get_close_matches(name, alike, n=1, cutoff=0.8)
     return near[0] if near else ""

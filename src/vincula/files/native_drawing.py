@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from vincula.files.limits import Limits
-from vincula.files.names import similar_name
+from vincula.files.names import MOST_COMPARED, similar_name
 from vincula.files.native_bodies import add_frame, declare_bodies, new_bodies
 from vincula.files.native_parts import drawn_contact, drawn_joint
 from vincula.files.problems import shown
@@ -32,6 +32,7 @@ def draw(
     """Draw everything that has a place; what is wrong is in the problems of the document."""
     sketch = Sketch(document, entry, Drawing(space, base), scale, base)
     _refuse_too_many(sketch, limits)
+    document.problems.refuse_if_any()
     _refuse_repeated_names(sketch)
     declare_bodies(sketch)
     _refuse_slips(sketch)
@@ -86,6 +87,8 @@ def _refuse_slips(sketch: Sketch) -> None:
     meant = {name for joint in entry.joints for name in joint.bodies} | set(entry.bodies)
     meant |= {entry.reference.body} if entry.reference else set()
     known = [body.name for body in sketch.drawing.bodies]
+    if len(known) > MOST_COMPARED:
+        return
     for name, location in new_bodies(sketch):
         similar = "" if name in meant else similar_name(name, [other for other in known if other != name])
         if similar:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vincula.files.names import similar_name
+from vincula.files.names import MOST_COMPARED, similar_name
 from vincula.files.schema_values import PlacedVector
 from vincula.mechanism.parts import GROUND, ContactPart, Joint
 
@@ -79,6 +79,8 @@ def _note_similar_bodies(
     entry: NativeFile, mechanism: Mechanism, base: Mechanism | None, report: LoadReport
 ) -> None:
     """Note bodies that are named once and look like another one: bodies are declared by use."""
+    if len(mechanism.bodies) > MOST_COMPARED:
+        return
     member = mechanism.reference.body if mechanism.reference else ""
     parts: tuple[Joint | ContactPart, ...] = (*mechanism.joints, *mechanism.contacts)
     uses = Counter(name for part in parts for name in (part.first, part.second))
