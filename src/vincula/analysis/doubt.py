@@ -89,19 +89,26 @@ _CONSEQUENCES: dict[MatrixName, tuple[str, str]] = {
 def _said(model: LinearModel, name: MatrixName, decision: RankDecision) -> str:
     low, high = decision.rank_min, decision.rank_max
     between = "or" if high == low + 1 else "to"
-    smallest = decision.doubtful_values[-1]
-    rounding = decision.cutoffs["rounding"]
-    cause = _CAUSES[decision.deciding].format(residual=model.uncertainty.residual)
-    side = "below" if smallest <= decision.cutoff else "not safely above"
-    member = repr(model.reference)
-    if_low, if_high = (text.format(member=member) for text in _CONSEQUENCES[name])
+    if_low, if_high = (text.format(member=repr(model.reference)) for text in _CONSEQUENCES[name])
     shares = participation_words(model, name, decision)
     return (
-        f"Rank of the {decision.name} is {low} {between} {high}: not decided.  The singular value "
-        f"{smallest:.2g} is above rounding ({rounding:.1g}) but {side} what {cause} can tell from zero "
-        f"({decision.cutoff:.1g}).  If {low}: {if_low} ({shares}).  If {high}: {if_high}.  "
+        f"Rank of the {decision.name} is {low} {between} {high}: not decided.  "
+        f"{_position(model, decision)}.  If {low}: {if_low} ({shares}).  If {high}: {if_high}.  "
         f"Taken as {decision.rank}.  To decide: {_REMEDIES[decision.deciding]}."
     )
+
+
+def _position(model: LinearModel, decision: RankDecision) -> str:
+    """Where the smallest doubtful singular value lies among the uncertainties."""
+    smallest, rounding = decision.doubtful_values[-1], decision.cutoffs["rounding"]
+    value = f"The singular value {smallest:.2g}"
+    if decision.deciding == "rounding":
+        return f"{value} is of the size of rounding errors ({rounding:.1g}): it may be one of them, or not"
+    above = "above" if smallest > rounding else "hardly above"
+    side = "below" if smallest <= decision.cutoff else "not safely above"
+    cause = _CAUSES[decision.deciding].format(residual=model.uncertainty.residual)
+    told = f"{side} what {cause} can tell from zero ({decision.cutoff:.1g})"
+    return f"{value} is {above} rounding ({rounding:.1g}) but {told}"
 
 
 def participation_words(model: LinearModel, name: MatrixName, decision: RankDecision) -> str:

@@ -128,7 +128,12 @@ class Ellipsoid:
             ModelError: The direction has no weighted component.
         """
         d = checked(direction, "direction", (len(self.components),))
-        return self.set.along(self.task_weight.without_ignored(d))
+        weighted = self.task_weight.without_ignored(d)
+        if d.any() and not weighted.any():
+            raise ModelError(
+                "the weights ignore every component of this direction: there is nothing to measure"
+            )
+        return self.set.along(weighted)
 
     def support(self, direction: ArrayLike) -> float:
         """The largest component along a direction: max of direction . x over the set."""

@@ -80,13 +80,15 @@ def sectioned(relation: Relation, task: Metric, motor: Metric) -> Relation:
             )
         ]
     )
-    rank = decide_rank(
+    decision = decide_rank(
         conditions, name="required zeros", scale=1.0, uncertainty={"subspace": relation.doubt}
-    ).rank
-    kept = svd(conditions)[2][:, rank:]
+    )
+    kept = svd(conditions)[2][:, decision.rank :]
+    # Nearly dependent conditions turn what is left: the next decisions must know.
+    doubt = min(1.0, decision.cutoff / decision.kept + relation.doubt)
     return Relation(
         relation.task @ kept, relation.motor @ kept, relation.task_factor, relation.motor_factor,
-        -1, -1, relation.orthonormal, relation.doubt,
+        -1, -1, relation.orthonormal, doubt,
     )  # fmt: skip
 
 

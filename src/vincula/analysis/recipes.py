@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import NoneType
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,7 +13,7 @@ from vincula.analysis.relation import force_relation, internal_relation, kinemat
 from vincula.analysis.spectrum import Spectrum, dual_spectrum, spectrum
 from vincula.analysis.vectorset import VectorSet
 from vincula.arrays import Matrix, Vector, frozen
-from vincula.errors import ModelError
+from vincula.errors import ModelError, WeightError
 from vincula.model import LinearModel
 from vincula.numerics.metric import Metric
 from vincula.weights import UNIT, Quantity, Weights
@@ -99,7 +100,18 @@ def motor_quantity(kind: Kind) -> Quantity:
 
 
 def resolved_weights(model: LinearModel, weights: Weights | None) -> Weights:
-    """The weights given, else those of the model, else the identity that nobody chose."""
+    """The weights given, else those of the model, else the identity that nobody chose.
+
+    Raises:
+        ModelError: Something else than a `LinearModel` and `Weights`.
+    """
+    if not isinstance(model, LinearModel):
+        raise ModelError(
+            f"an analysis needs a LinearModel, got {type(model).__name__}: mechanism.linearize() makes one "
+            "at a configuration, LinearModel.from_matrices one from J and G"
+        )
+    if not isinstance(weights, (Weights, NoneType)):
+        raise WeightError(f"weights are {weights!r}: give Weights(twist=..., rate=...)")
     return weights or model.weights or UNIT
 
 

@@ -10,12 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
+from vincula.analysis.graded import GradedParts, graded_equilibria, graded_motions
 from vincula.arrays import Matrix, Vector
 from vincula.model import LinearModel
-from vincula.numerics.echelon import graded_pivots, refined_kernel
-from vincula.numerics.subspaces import kernel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,23 +50,6 @@ class Relation:
         return int(self.task.shape[1])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class GradedParts:
-    """Bases of the parts of a relation, accurate entry by entry, for weights of very different size.
-
-    Attributes:
-        infinite: t x n_inf, motor side zero.
-        finite_task: t x n_f.
-        finite_motor: r x n_f; the finite part is any complement of the other two.
-        zero: r x n_zero, task side zero.
-    """
-
-    infinite: Matrix
-    finite_task: Matrix
-    finite_motor: Matrix
-    zero: Matrix
-
-
 def kinematic_relation(model: LinearModel) -> Relation:
     """M = {(q_a, u)}: twists of the member and the motor rates that go with them (eqs. 8-13)."""
     ledger = model.ledger
@@ -85,38 +65,8 @@ def kinematic_relation(model: LinearModel) -> Relation:
         zero=max(0, counts.redundancy),
         orthonormal=True,
         doubt=ledger.subspace_doubt,
-        graded=lambda task, motor: _graded_motions(model, task, motor),
-        alike=model.length is None or 0.01 <= model.length <= 100.0,
-    )
-
-
-def _graded_motions(model: LinearModel, task_sizes: Vector, motor_sizes: Vector) -> GradedParts:
-    """Motions in echelon form on pivots that follow the weights: numerics page, step 5."""
-    ledger, subspaces = model.ledger, model.ledger.subspaces
-    n_a, n_p = len(model.motors), len(model.passives)
-    motions, _ = subspaces.motions_and_equilibria
-    k, counts = motions.shape[1], ledger.summary
-    free = motions[n_a:] @ kernel(motions[:n_a], k - counts.indeterminacy)
-    idle = motions[:n_a] @ kernel(motions[n_a:], k - counts.redundancy)
-    passive = subspaces.kernel("passive")
-    held = graded_pivots(passive, np.ones(n_p), passive.shape[1])
-    of_free = graded_pivots(free, task_sizes, counts.indeterminacy)
-    of_idle = graded_pivots(idle, motor_sizes, counts.redundancy)
-    taken = [*of_idle, *(n_a + i for i in of_free)]
-    rest = graded_pivots(motions, np.concatenate([motor_sizes, task_sizes]), counts.coordinated, taken)
-    pivots = [i if i < n_a else i + n_p for i in (*taken, *rest)]
-    finite = refined_kernel(ledger.matrix("all"), ledger.rank("all"), pivots, [n_a + j for j in held])
-    infinite = refined_kernel(
-        ledger.matrix("passive+member"), ledger.rank("passive+member"), [n_p + i for i in of_free], held
-    )
-    zero = refined_kernel(
-        ledger.matrix("active+passive"), ledger.rank("active+passive"), of_idle, [n_a + j for j in held]
-    )
-    return GradedParts(
-        infinite=infinite[n_p:],
-        finite_task=finite[n_a + n_p :, len(taken) :],
-        finite_motor=finite[:n_a, len(taken) :],
-        zero=zero[:n_a],
+        graded=lambda task, motor: graded_motions(model, task, motor),
+        alike=_alike(model),
     )
 
 
@@ -135,6 +85,8 @@ def force_relation(model: LinearModel) -> Relation:
         zero=max(0, counts.internal_torques),
         orthonormal=True,
         doubt=ledger.subspace_doubt,
+        graded=lambda task, motor: graded_equilibria(model, task, motor),
+        alike=_alike(model),
     )
 
 
@@ -152,3 +104,7 @@ def internal_relation(model: LinearModel) -> Relation:
         orthonormal=False,
         doubt=ledger.subspace_doubt,
     )
+
+
+def _alike(model: LinearModel) -> bool:
+    return model.length is None or 0.01 <= model.length <= 100.0

@@ -14,7 +14,7 @@ import numpy as np
 from vincula.analysis.parts import graded_parts, sectioned, split_parts
 from vincula.analysis.relation import Relation
 from vincula.arrays import Matrix, Vector
-from vincula.numerics.csd import angles_of_pair, deflated
+from vincula.numerics.csd import angles_of_pair, deflated, orthonormal
 from vincula.numerics.csd_graded import angles_of_graded_pair
 from vincula.numerics.lapack import svd
 from vincula.numerics.metric import Metric
@@ -58,19 +58,21 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
     """
     basis = sectioned(relation, task, motor)
     parts = graded_parts(basis, task, motor) or split_parts(basis, task, motor)
+    t, e = (_weighed(task, basis.task_factor, part) for part in (parts.finite_task, parts.infinite))
+    s, z = (_weighed(motor, basis.motor_factor, part) for part in (parts.finite_motor, parts.zero))
     # Worst case over what is free, best case over what is redundant (eqs. 11-13): finite directions
     # are taken orthogonal, in the metrics, to the infinite and to the zero ones.
-    t, free, task_basis = deflated(
-        _weighed(task, basis.task_factor, parts.finite_task),
-        _weighed(task, basis.task_factor, parts.infinite),
-    )
-    s, idle, motor_basis = deflated(
-        _weighed(motor, basis.motor_factor, parts.finite_motor),
-        _weighed(motor, basis.motor_factor, parts.zero),
-    )
-    angles = angles_of_graded_pair(t, s) if parts.graded else angles_of_pair(t, s)
-    task_side = _physical(task, task_basis @ angles.task)
-    motor_side = _physical(motor, motor_basis @ angles.motor)
+    if parts.graded:
+        free, idle = orthonormal(e), orthonormal(z)
+        angles = angles_of_graded_pair(t, s, e, z)
+        task_side, motor_side = angles.task, angles.motor
+    else:
+        t, free, task_basis = deflated(t, e)
+        s, idle, motor_basis = deflated(s, z)
+        angles = angles_of_pair(t, s)
+        task_side, motor_side = task_basis @ angles.task, motor_basis @ angles.motor
+    unreached, unused = settled(_rest(free, task_side)), settled(_rest(idle, motor_side))
+    task_side, motor_side = _physical(task, task_side), _physical(motor, motor_side)
     signs = _signs(task_side)
     return Spectrum(
         ratios=angles.ratios,
@@ -78,8 +80,8 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
         motor=motor_side * signs + 0.0,
         infinite=_oriented(_physical(task, settled(free))),
         zero=_oriented(_physical(motor, settled(idle))),
-        unreached=_oriented(_physical(task, settled(_rest(task_basis, angles.task)))),
-        unused=_oriented(_physical(motor, settled(_rest(motor_basis, angles.motor)))),
+        unreached=_oriented(_physical(task, unreached)),
+        unused=_oriented(_physical(motor, unused)),
         undefined=parts.undefined,
     )
 
@@ -120,10 +122,11 @@ def _physical(metric: Metric, block: Matrix) -> Matrix:
     return block if metric.unit else metric.inverse @ block
 
 
-def _rest(basis: Matrix, used: Matrix) -> Matrix:
-    """The part of an orthonormal basis that orthonormal coordinates `used` leave over."""
-    size, count = used.shape
-    return basis[:, :0] if size == count else basis @ svd(used)[0][:, count:]
+def _rest(*used: Matrix) -> Matrix:
+    """Orthonormal basis of what orthonormal columns leave over."""
+    size = used[0].shape[0]
+    count = sum(columns.shape[1] for columns in used)
+    return used[0][:, :0] if size == count else svd(np.hstack(used))[0][:, count:]
 
 
 def _signs(columns: Matrix) -> Vector:

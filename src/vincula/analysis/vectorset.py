@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vincula.arrays import Matrix, Vector, checked, frozen
-from vincula.errors import ModelError, UnknownNameError
+from vincula.errors import DuplicateNameError, ModelError, UnknownNameError
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import decide_rank, negligible
 
@@ -110,12 +110,17 @@ class VectorSet:
 
         One semi-axis gives its two ends, two an ellipse of `count` points, three or more the
         ellipses in the planes of every pair of semi-axes.
+
+        Raises:
+            ModelError: The count is no whole number above zero.
         """
         n, r = self.axes.shape
         if r == 0:
             return np.zeros((n, 1))
         if r == 1:
             return np.hstack([self.axes, -self.axes])
+        if not isinstance(count, (int, np.integer)) or count < 1:
+            raise ModelError(f"count is {count!r}: give a whole number of points, one or more")
         angle = np.linspace(0.0, 2.0 * np.pi, count)
         circle = np.vstack([np.cos(angle), np.sin(angle)])
         pairs = [(i, j) for i in range(r) for j in range(i + 1, r)]
@@ -148,15 +153,19 @@ def component_indices(components: Sequence[str | int], names: Sequence[str]) -> 
 
     Raises:
         UnknownNameError: No such component.
+        DuplicateNameError: A component given twice.
     """
-    found = []
-    for item in components:
+    found: list[int] = []
+    for item in [components] if isinstance(components, str) else components:
         if isinstance(item, str) and item in names:
-            found.append(list(names).index(item))
-        elif not isinstance(item, str) and 0 <= int(item) < len(names):
-            found.append(int(item))
+            index = list(names).index(item)
+        elif isinstance(item, (int, np.integer)) and 0 <= item < len(names):
+            index = int(item)
         else:
             raise UnknownNameError("component", str(item), names)
+        if index in found:
+            raise DuplicateNameError("component", names[index])
+        found.append(index)
     return found
 
 

@@ -113,6 +113,11 @@ def deflated(block: Matrix, fixed: Matrix) -> tuple[Matrix, Matrix, Matrix]:
     return turned[j:], factor[:, :j], factor[:, j:]
 
 
+def orthonormal(columns: Matrix) -> Matrix:
+    """Orthonormal basis of independent columns, stable row by row."""
+    return qr_rows_pivoted(columns, columns.shape[1])
+
+
 def _normalised(columns: Matrix) -> tuple[Matrix, Vector]:
     lengths = np.sqrt(np.einsum("ij,ij->j", columns, columns))
     return columns / lengths, lengths

@@ -22,14 +22,24 @@ _SWEEPS = 60
 Rows = list[list[Decimal]]
 
 
-def angles_of_graded_pair(task: Matrix, motor: Matrix) -> Angles:
+def angles_of_graded_pair(
+    task: Matrix, motor: Matrix, free: Matrix | None = None, idle: Matrix | None = None
+) -> Angles:
     """As `angles_of_pair`, accurate for any grading of rows on both sides.
 
     Eigenvalues of L^-1 T^T T L^-T with S^T S = L L^T, by Jacobi rotations.
+
+    Args:
+        task: First block, p x k.
+        motor: Second block, r x k.
+        free: p x j columns that task directions are taken orthogonal to.
+        idle: r x i columns that motor directions are taken orthogonal to.
     """
     k = task.shape[1]
+    if k == 0:
+        return Angles(np.empty(0), np.empty(0), np.empty_like(task), np.empty_like(motor))
     with localcontext(Context(prec=_DIGITS, Emin=-999999, Emax=999999)):
-        t, s = _rows(task), _rows(motor)
+        t, s = _without(_rows(task), free), _without(_rows(motor), idle)
         lower = _cholesky(_gram(s, k))
         half = [_forward(lower, column) for column in _gram(t, k)]
         squares = [_forward(lower, list(column)) for column in zip(*half, strict=True)]
@@ -52,6 +62,18 @@ def angles_of_graded_pair(task: Matrix, motor: Matrix) -> Angles:
 
 def _rows(matrix: Matrix) -> Rows:
     return [[Decimal(x) for x in row] for row in matrix.tolist()]
+
+
+def _without(rows: Rows, removed: Matrix | None) -> Rows:
+    """The part of the columns orthogonal to the columns of `removed`."""
+    if removed is None or removed.shape[1] == 0:
+        return rows
+    e, j, k = _rows(removed), removed.shape[1], len(rows[0])
+    lower = _cholesky(_gram(e, j))
+    columns = [[row[c] for row in rows] for c in range(k)]
+    taken = [[_dot([row[i] for row in e], column) for i in range(j)] for column in columns]
+    parts = [_backward(lower, _forward(lower, right)) for right in taken]
+    return [[row[c] - _dot(e[r], parts[c]) for c in range(k)] for r, row in enumerate(rows)]
 
 
 def _dot(a: list[Decimal], b: list[Decimal]) -> Decimal:

@@ -9,7 +9,11 @@ import pytest
 from tests.paper.matrices import five_bar, stewart
 from tests.unit.analysis.exact_spectrum import exact_efficiencies
 
-from vincula.analysis.manipulability import dual_force_ellipsoid, kinematic_ellipsoid
+from vincula.analysis.manipulability import (
+    dual_force_ellipsoid,
+    kinematic_ellipsoid,
+    passive_force_ellipsoid,
+)
 from vincula.model import LinearModel
 from vincula.weights import Weights
 
@@ -45,6 +49,17 @@ def test_weights_over_thirty_two_orders(
         exact = exact_efficiencies(model, twist, rate)
         assert kinematic_ellipsoid(model, weights).finite == pytest.approx(exact, rel=bound)
         assert 1.0 / dual_force_ellipsoid(model, weights).finite[::-1] == pytest.approx(exact, rel=bound)
+
+
+@pytest.mark.parametrize("name", DRAWS)
+def test_forces_with_weights_of_their_own(paper: dict[str, Any], name: str, rng: np.random.Generator) -> None:
+    """Structural wrenches and internal torques besides; the peer is the dual problem of motions."""
+    model = mechanism(paper, name)
+    for step in range(DRAWS[name]):
+        wrench, torque = graded(model.dimension, step, rng), graded(len(model.motors), step, rng)
+        found = passive_force_ellipsoid(model, Weights(wrench=wrench, torque=torque))
+        exact = exact_efficiencies(model, 1.0 / wrench, 1.0 / torque)
+        assert 1.0 / found.finite[::-1] == pytest.approx(exact, rel=BOTH_SIDES)
 
 
 @pytest.mark.parametrize("step", 10.0 ** -np.arange(2.0, 8.0))
