@@ -9,6 +9,7 @@ import click
 from vincula.cli.exits import DONE, DOUBTFUL
 from vincula.cli.options import (
     active_option,
+    close_option,
     convention_option,
     mechanism_options,
     output_options,
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     short_help="Mobility, statics and ellipsoids of FILE.",
     epilog="Example: vincula analyze robot.xml --reference gripper@tip --active j1,j2 --at key:home",
 )
-@together(active_option, mechanism_options, weights_option, viewpoint_option, convention_option)
+@together(active_option, mechanism_options, close_option, weights_option, viewpoint_option, convention_option)
 @together(strict_option, output_options)
 @click.pass_context
 def analyze_command(
@@ -45,7 +46,7 @@ def analyze_command(
 ) -> None:
     """Mobility, statics and the five ellipsoids of FILE at one configuration.
 
-    FILE is a path or example:NAME. An open loop is refused (exit code 1): nothing is moved.
+    FILE is a path or example:NAME. An open loop is refused (exit code 1): nothing is moved unless --close.
     """
     from vincula.analysis.result import analyze
     from vincula.cli.subject import read_subject

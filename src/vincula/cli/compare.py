@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from vincula.cli.exits import DONE, DOUBTFUL
-from vincula.cli.options import mechanism_options, output_options, strict_option, together, weights_option
+from vincula.cli.options import (
+    close_option,
+    mechanism_options,
+    output_options,
+    strict_option,
+    together,
+    weights_option,
+)
 from vincula.cli.output import print_json, said_warnings, tell, warnings_on_stderr
 
 if TYPE_CHECKING:
@@ -56,7 +63,7 @@ CRITERION_NAMES: Final = (
     show_default=True,
     help="Components that an index looks at.",
 )
-@together(weights_option, strict_option, output_options)
+@together(close_option, weights_option, strict_option, output_options)
 @click.pass_context
 def compare_command(
     ctx: click.Context,

@@ -22,6 +22,8 @@ COMMANDS: Final = {
     "inspect": "inspection",
     "analyze": "analyze",
     "compare": "compare",
+    "close": "close",
+    "follow": "follow",
     "plot": "plot",
     "convert": "convert",
     "examples": "examples",

@@ -104,6 +104,22 @@ at_option = click.option(
     "key:NAME is a keyframe. Joints not named keep the value of the file.",
 )
 
+ground_option = click.option(
+    "--ground",
+    multiple=True,
+    metavar="BODY",
+    callback=once,
+    help="See everything from this body, as a foot from the trunk: it is the ground, its axes are the "
+    "ground axes.",
+)
+
+close_option = click.option(
+    "--close",
+    "closing",
+    is_flag=True,
+    help="Close open loops first, near --at; joints named there are held if they can be. What moved is told.",
+)
+
 weights_option = click.option(
     "--weights",
     multiple=True,
@@ -151,5 +167,6 @@ mechanism_options = together(
     lock_option,
     set_option,
     loops_option,
+    ground_option,
     tolerance_option,
 )

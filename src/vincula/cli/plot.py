@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from vincula.cli.options import mechanism_options, output_options, together, weights_option
+from vincula.cli.options import close_option, mechanism_options, output_options, together, weights_option
 from vincula.cli.output import print_json, warnings_on_stderr
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ DRAWABLE: Final = ("kinematic", "active-force", "passive-force", "dual-force")
     metavar="A,B|all",
     help="Motors; given several times, one row of pictures a choice.",
 )
-@together(mechanism_options, weights_option)
+@together(mechanism_options, close_option, weights_option)
 @click.option(
     "-o",
     "--output",

@@ -73,6 +73,8 @@ def read_subject(
     at: str | None,
     tolerance: str | None,
     loops: Sequence[str] = (),
+    ground: str | None = None,
+    closing: bool = False,
 ) -> Subject:
     """The mechanism of a file with the common options applied.
 
@@ -88,6 +90,8 @@ def read_subject(
         return load_with_report(file, parameters, beside=loops)
 
     mechanism, report = _usage("--set" if parameters else "", load)
+    if ground is not None:
+        mechanism = _usage("--ground", lambda: mechanism.with_ground(ground))
     if lock is not None:
         mechanism = _usage("--lock", lambda: mechanism.with_lock(lock))
     mechanism = with_reference(mechanism, reference, axes)
@@ -96,6 +100,10 @@ def read_subject(
     configuration = mechanism.home
     if at is not None:
         configuration = _usage("--at", lambda: read_configuration(at, mechanism, report.units))
+    if closing:
+        from vincula.cli.closing import closed_near
+
+        configuration = closed_near(mechanism, configuration, at)
     return Subject(file, mechanism, configuration, report)
 
 

@@ -44,10 +44,15 @@ def read_configuration(
     """
     if text.startswith(_KEY):
         return _keyframe(text[len(_KEY) :], mechanism)
-    ending = PurePath(text).suffix.lower()
-    if "=" in text and ending not in (".json", ".yaml", ".yml"):
+    if is_text(text):
         return _from_text(text, mechanism, units)
     return _from_file(text, mechanism, units, limits)
+
+
+def is_text(text: str) -> bool:
+    """Whether a CONFIG is `name=value,...` and no keyframe or file."""
+    ending = PurePath(text).suffix.lower()
+    return not text.startswith(_KEY) and "=" in text and ending not in (".json", ".yaml", ".yml")
 
 
 def _keyframe(name: str, mechanism: Mechanism) -> Configuration:

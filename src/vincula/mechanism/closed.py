@@ -19,7 +19,7 @@ from vincula.mechanism.closure_solver import Solution
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import Holding
-from vincula.mechanism.residuals import LoopResidual
+from vincula.mechanism.residuals import LoopResidual, axis_values
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import decide_rank
 
@@ -40,6 +40,7 @@ class Closing:
         solution: Their solution.
         free: For every rate, whether it was free to move.
         start: The state that the search started from.
+        near: The configuration that the search started from.
     """
 
     mechanism: Mechanism
@@ -48,6 +49,7 @@ class Closing:
     solution: Solution
     free: Mask
     start: Vector
+    near: Configuration
 
 
 class ClosedConfiguration(Configuration):
@@ -61,9 +63,7 @@ class ClosedConfiguration(Configuration):
         at_limits: Axes that ended on a limit.
     """
 
-    def __init__(
-        self, values: Configuration, found: Closing, iterations: int, attempts: int
-    ) -> None:
+    def __init__(self, values: Configuration, found: Closing, iterations: int, attempts: int) -> None:
         super().__init__(values)
         self._found = found
         self.iterations, self.attempts = iterations, attempts
@@ -106,14 +106,20 @@ class ClosedConfiguration(Configuration):
 
     @cached_property
     def moved(self) -> dict[str, float]:
-        """How far closing moved every axis from the start [rad, m], motors over several axes included."""
+        """How far closing moved every axis from the start [rad, m], motors over several axes included.
+
+        Axes of balls that close loops have no value to compare and are left out.
+        """
         where = self._found.problem.variables
         step = where.step_between(self._found.start, self._found.solution.state) * where.column_scale
-        return {
+        moved = {
             name: float(value)
             for name, value in zip(where.names, step, strict=True)
             if not name.startswith(MEMBER)
         }
+        before, after = (axis_values(self._found.mechanism, q) for q in (self._found.near, self))
+        moved.update({axis: after[axis] - before[axis] for axis in after if axis not in moved})
+        return moved
 
     @cached_property
     def branch(self) -> Branch:

@@ -70,7 +70,7 @@ def close(
         )
     best, more = approached(problem, best, goal, ~fixed & ~best.held_by_limit, bounds)
     values = problem.configuration(best.state, q)
-    found = Closing(mechanism, held, problem, best, ~fixed & ~best.held_by_limit, goal)
+    found = Closing(mechanism, held, problem, best, ~fixed & ~best.held_by_limit, goal, q)
     return ClosedConfiguration(values, found, iterations + more, tried)
 
 
@@ -214,8 +214,7 @@ def _held_joints(mechanism: Mechanism, held: Holding) -> set[str]:
     whole = {
         joint.name
         for joint in mechanism.all_joints
-        if mechanism.type_of(joint).axes
-        and still.issuperset(mechanism.type_of(joint).axis_names(joint.name))
+        if mechanism.type_of(joint).axes and still.issuperset(mechanism.type_of(joint).axis_names(joint.name))
     }
     return whole | set(held.joints)
 

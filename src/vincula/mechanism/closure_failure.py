@@ -45,7 +45,7 @@ class LengthConflict:
     def __str__(self) -> str:
         others = [f"{name} {size:.6g} m" for name, size in self.sides.items() if name != self.longest]
         return (
-            f"lengths that cannot meet: {self.longest} is {self.sides[self.longest]:.6g} m, more than the "
+            f"Lengths that cannot meet: {self.longest} is {self.sides[self.longest]:.6g} m, more than the "
             f"other sides of its loop together ({listing(others, 6)}), which are {self.short:.4g} m too short"
         )
 
@@ -150,7 +150,7 @@ def cannot_close(
     worst = max(residuals, key=lambda r: r.gap)
     tried = f"{attempts} starts" if attempts > 1 else "one start"
     reasons = [str(conflict) for conflict in conflicts[:2]] or [
-        f"no closed configuration was found from {tried}, and no simple length explains it"
+        f"No closed configuration was found from {tried}, and no simple length explains it"
     ]
     text = ". ".join([f"cannot close: {worst} at best", *reasons, *hints])
     return ClosureError(

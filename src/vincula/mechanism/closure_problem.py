@@ -323,9 +323,7 @@ def _scalar_couplings(mechanism: Mechanism) -> list[Coupling]:
     return [c for c in mechanism.couplings if all(axis in scalar for axis in c.axes)]
 
 
-def _joints_of_axes(
-    mechanism: Mechanism, couplings: Iterable[Coupling], drives: Iterable[Drive]
-) -> set[str]:
+def _joints_of_axes(mechanism: Mechanism, couplings: Iterable[Coupling], drives: Iterable[Drive]) -> set[str]:
     """Joints with an axis in a coupling or drive."""
     joint_of = {
         axis: joint.name

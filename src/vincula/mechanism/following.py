@@ -200,7 +200,8 @@ class _Run:
             kind = "singularity" if singular else "incompatible" if found.kind == "incompatible" else "lost"
             reason = "; ".join(str(s) for s in singular) or _without_singularity(found.kind, self.held)
         where = self._held_values(found.point)
-        return PathEvent(kind, parameter, q, singular, axis, found.bound, f"{reason}, at {where}")
+        passable = found.kind == "singularity" and not found.turns
+        return PathEvent(kind, parameter, q, singular, axis, found.bound, f"{reason}, at {where}", passable)
 
     def _held_values(self, point: TrackPoint) -> str:
         """Where the motors and the held pose stand, for messages."""
@@ -236,5 +237,3 @@ def _motors(mechanism: Mechanism, held: Holding) -> tuple[str, ...]:
         named += mechanism.type_of(mechanism.joint[joint]).axis_names(joint)
     named += [*held.axes, *held.drives]
     return tuple(dict.fromkeys([*named, *mechanism.active]))
-
-

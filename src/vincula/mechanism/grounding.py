@@ -29,9 +29,9 @@ def with_ground(mechanism: Mechanism, body: str) -> Mechanism:
     dropped = _floating(mechanism, body)
     needed = _old_ground_needed(mechanism, dropped)
     names = {body: GROUND, GROUND: old}
-    bodies = tuple(
-        replace(b, pose=seen @ b.pose) for b in mechanism.bodies if b.name != body
-    ) + ((Body(old, seen),) if needed else ())
+    bodies = tuple(replace(b, pose=seen @ b.pose) for b in mechanism.bodies if b.name != body) + (
+        (Body(old, seen),) if needed else ()
+    )
     gone = {
         axis
         for joint in mechanism.joints

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 MotorValues = Mapping[str, float | Sequence[float] | Vector]
 """Values by joint, axis or motor name [rad, m]."""
+POINT: Final = "(position of the reference point)"
+"""Name of what is held when the reference point alone is."""
 PoseOrPoint = Pose | Sequence[float] | Vector
 """Where the reference member is to be: point and body axes in ground axes, or the point alone [m]."""
 
@@ -52,12 +54,11 @@ class Holding:
     @property
     def names(self) -> tuple[str, ...]:
         """Everything that is held, as the user named it or by axis."""
-        return (*self.joints, *self.axes, *self.drives, *((MEMBER,) if self.member else ()))
+        member = (MEMBER,) if self.pose is not None else (POINT,) if self.point is not None else ()
+        return (*self.joints, *self.axes, *self.drives, *member)
 
 
-def holding(
-    mechanism: Mechanism, motors: MotorValues | None, pose: PoseOrPoint | None = None
-) -> Holding:
+def holding(mechanism: Mechanism, motors: MotorValues | None, pose: PoseOrPoint | None = None) -> Holding:
     """The values that a user asks for, checked.
 
     Args:

@@ -38,9 +38,7 @@ def root(track: Track, one: TrackPoint, two: TrackPoint, measure: Measuring) -> 
     return track.between(one, two, share), share
 
 
-def _root_share(
-    track: Track, one: TrackPoint, two: TrackPoint, measure: Measuring, accuracy: float
-) -> float:
+def _root_share(track: Track, one: TrackPoint, two: TrackPoint, measure: Measuring, accuracy: float) -> float:
     from scipy.optimize import brentq
 
     def value(share: float) -> float:

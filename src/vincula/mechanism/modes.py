@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import MotorValues
 from vincula.mechanism.kinematics import part_frames
 from vincula.mechanism.parts import ContactPart, Joint
+from vincula.mechanism.residuals import axis_values
 from vincula.numerics.rank import negligible
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def assembly_modes(
     limits: bool = False,
 ) -> tuple[ClosedConfiguration, ...]:
     """All assembly modes found from random starts; see `Mechanism.assembly_modes`."""
-    held = motors if motors is not None else motors_at_home(mechanism)
+    held = motors if motors is not None else motors_at(mechanism, mechanism.home)
     rng = np.random.default_rng(seed)
     found: list[tuple[Vector, ClosedConfiguration]] = []
     for k in range(starts):
@@ -65,22 +67,29 @@ def joint_points(mechanism: Mechanism, q: Configuration) -> Vector:
     return np.concatenate(points) if points else np.zeros(0)
 
 
-def motors_at_home(mechanism: Mechanism) -> dict[str, float | Vector]:
-    """Home positions of the active axes and of the motors over several axes."""
-    from vincula.mechanism.residuals import axis_values
+def motors_at(
+    mechanism: Mechanism, q: Configuration, names: Iterable[str] | None = None
+) -> dict[str, float | Vector]:
+    """Where axes and motors over several axes stand at a configuration [rad, m].
 
-    values = axis_values(mechanism, mechanism.home)
+    An axis of a ball has no value of its own: its whole joint is given.
+
+    Args:
+        mechanism: The mechanism.
+        q: The configuration.
+        names: Axes and drives; the active ones by default.
+    """
+    values = axis_values(mechanism, q)
     held: dict[str, float | Vector] = {}
     drives = {drive.name: drive for drive in mechanism.drives}
-    for name in mechanism.active:
+    for name in mechanism.active if names is None else names:
         if name in drives:
             held[name] = sum(c * values[axis] for axis, c in drives[name].drives.items())
         elif name in values:
             held[name] = values[name]
-        else:
+        elif name.rpartition(".")[0] in q:
             joint = name.rpartition(".")[0]
-            if joint in mechanism.home:
-                held[joint] = mechanism.home[joint]
+            held[joint] = q[joint]
     return held
 
 

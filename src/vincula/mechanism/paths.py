@@ -48,6 +48,8 @@ class PathEvent:
         axis: The axis that meets its limit.
         limit: Value of that limit [rad, m].
         reason: In words.
+        passable: Whether the path goes on beyond it, so that `through` would pass it; a fold, where
+            what is held would have to turn back, cannot be passed.
     """
 
     kind: StopKind
@@ -57,6 +59,7 @@ class PathEvent:
     axis: str = ""
     limit: float = float("nan")
     reason: str = ""
+    passable: bool = False
 
     @property
     def joints(self) -> tuple[str, ...]:

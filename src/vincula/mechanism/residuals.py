@@ -43,8 +43,9 @@ class LoopResidual:
     gap: float
 
     def __str__(self) -> str:
-        parts = [f"{self.linear:.3g} m"] if self.linear or not self.angular else []
-        parts += [f"{self.angular:.3g} rad"] if self.angular else []
+        seen = 1e-9 * max(self.linear, self.angular)
+        parts = [f"{self.linear:.3g} m"] if self.linear > seen or not self.angular else []
+        parts += [f"{self.angular:.3g} rad"] if self.angular > seen else []
         return f"{self.kind} {self.name!r} is open by {' and '.join(parts)}"
 
 

@@ -195,9 +195,7 @@ class Stepper:
                 found.append(self._singular(track, watch, there.point, after, 1.0, there))
             elif after.sign_against(before) < 0.0:
                 point, share = root(track, here.point, there.point, self._signed(k, before))
-                found.append(
-                    self._singular(track, watch, point, self._measures(point)[k], share, there)
-                )
+                found.append(self._singular(track, watch, point, self._measures(point)[k], share, there))
         return found
 
     def _touches(self, track: Track, before: _Here, here: _Here, there: _Here) -> list[Found]:

@@ -31,11 +31,18 @@ SPATIAL_HEIGHT = 0.86
 """Height of a spatial panel over its width."""
 
 
-def figure_of(panels: Sequence[Panel], sheet: Sheet) -> Figure:
-    """The figure of some panels, row by row; all of them show the same window at the same scale."""
+def figure_of(panels: Sequence[Panel], sheet: Sheet, around: Matrix | None = None) -> Figure:
+    """The figure of some panels, row by row; all of them show the same window at the same scale.
+
+    Args:
+        panels: The panels.
+        sheet: How they are laid out.
+        around: Points that the window must hold as well: of the other frames of an animation.
+    """
     planar = panels[0].scene.space is PLANAR
     shapes = [panel.shape for panel in panels if panel.shape is not None]
-    points = layout.stacked([block for p in panels for block in _points(p)])
+    seen_points = [block for p in panels for block in _points(p)]
+    points = layout.stacked(seen_points if around is None else [*seen_points, around])
     left = layout.LEFT if planar else layout.RIGHT
     panel_width = layout.panel_width(sheet.width, sheet.columns, left)
     seen = layout.window(points, panel_width) if planar else None

@@ -81,13 +81,13 @@ def plot_mechanism(
         MissingReferenceError: Ellipsoids are asked for and no reference member is named.
         ClosureError: Ellipsoids are asked for and a loop is open.
     """
-    _need_matplotlib()
+    need_matplotlib()
     kinds = _kinds(mechanism, ellipsoids)
     planar = mechanism.space is PLANAR
     paper = width if width is not None else (layout.COLUMN if planar or len(kinds) < 2 else layout.PAGE)
     panels, remark = _panels([mechanism], q, kinds, weights, [""])
     columns = layout.columns_for(len(panels), 2 if paper < 5.0 or not planar else 4)
-    return _figure(panels, Sheet(paper, columns, _named(mechanism, names), direction, remark))
+    return _figure(panels, Sheet(paper, columns, wants_names(mechanism, names), direction, remark))
 
 
 def plot_comparison(
@@ -122,13 +122,13 @@ def plot_comparison(
         MissingReferenceError: No reference member is named.
         ClosureError: A loop is open.
     """
-    _need_matplotlib()
+    need_matplotlib()
     if not designs:
         raise ModelError("a comparison needs at least one choice of motors")
     kinds = _kinds(mechanism, ellipsoids)
     variants = [mechanism.with_active(motors) for motors in designs]
     panels, remark = _panels(variants, q, kinds, weights, [motors_text(variant) for variant in variants])
-    return _figure(panels, Sheet(width, max(1, len(kinds)), _named(mechanism, names), direction, remark))
+    return _figure(panels, Sheet(width, max(1, len(kinds)), wants_names(mechanism, names), direction, remark))
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
@@ -143,7 +143,7 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     if ending not in FORMATS:
         raise UnknownNameError("figure format", ending or target.name, FORMATS)
     stamps = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
-    with _settings():
+    with drawing_settings():
         figure.savefig(target, format=ending[1:], metadata=stamps[ending])
     return target
 
@@ -170,7 +170,8 @@ def _kinds(mechanism: Mechanism, ellipsoids: Sequence[Kind] | None) -> tuple[Kin
     return tuple(ellipsoids)
 
 
-def _named(mechanism: Mechanism, names: bool | None) -> bool:
+def wants_names(mechanism: Mechanism, names: bool | None) -> bool:
+    """Whether joints are named: as asked, else where there are few of them."""
     if names is not None:
         return names
     return len(mechanism.joints) <= NAMED_UP_TO
@@ -214,11 +215,16 @@ def _shape(ellipsoid: Ellipsoid, where: Scene, scale: float) -> shapes.Ellipsoid
 def _figure(panels: Sequence[Panel], sheet: Sheet) -> Figure:
     from vincula.view.figures import figure_of
 
-    with _settings():
+    with drawing_settings():
         return figure_of(panels, sheet)
 
 
-def _need_matplotlib() -> None:
+def need_matplotlib() -> None:
+    """Refuse to draw without matplotlib.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
     try:
         import matplotlib as _matplotlib  # noqa: F401
     except ImportError:
@@ -226,7 +232,7 @@ def _need_matplotlib() -> None:
 
 
 @contextmanager
-def _settings() -> Iterator[None]:
+def drawing_settings() -> Iterator[None]:
     """Our settings while a figure is made or written, the user's before and after."""
     import matplotlib
 

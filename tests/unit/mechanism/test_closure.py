@@ -84,7 +84,7 @@ def test_pose_of_the_reference_member() -> None:
 
 
 def test_lengths_that_cannot_meet_are_named() -> None:
-    with pytest.raises(vc.ClosureError, match="lengths that cannot meet: o4 to o2") as refusal:
+    with pytest.raises(vc.ClosureError, match="Lengths that cannot meet: o4 to o2") as refusal:
         five_bar().close(motors={"o1": 0.3, "o5": -0.2})
     error = refusal.value
     assert error.loop == "o3"
@@ -112,7 +112,7 @@ def test_a_loop_frame_pair_too_far_apart_is_refused() -> None:
     )
     end, far = Pose.at((2.0, 0.0)), Pose.at((0.0, 2.5))
     loop = Joint("end", "revolute", "two", "ground", end, far, closure=True)
-    with pytest.raises(vc.ClosureError, match="lengths that cannot meet") as refusal:
+    with pytest.raises(vc.ClosureError, match="Lengths that cannot meet") as refusal:
         _with_joint(arm, loop).close()
     assert refusal.value.loop == "end"
     assert refusal.value.gap == pytest.approx(0.5, abs=1e-6)
