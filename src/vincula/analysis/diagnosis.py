@@ -126,7 +126,7 @@ def _indeterminate(model: LinearModel) -> list[str]:
     for column in localised(found, slice(n_p, None), model.ledger.subspace_doubt).T:
         twist = model.scaled.twist * column[n_p:]
         joints = _taking_part(model.scaled.passive_column * column[:n_p], model.passives)
-        how = f"direction {components(twist / np.abs(twist).max(), model.twist_components)}"
+        how = f"direction {components(twist / (np.abs(twist).max() or 1.0), model.twist_components)}"
         if model.motions is not None and model.frame == "ground axes":
             verb, path = motion_of_body(model, twist, model.motions.origin, model.ledger.subspace_doubt)
             how = f"it can {verb} {path} ({how})"

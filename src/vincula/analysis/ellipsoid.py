@@ -13,6 +13,7 @@ from vincula.analysis.vectorset import VectorSet
 from vincula.arrays import Matrix, Vector, checked
 from vincula.errors import ModelError, listing
 from vincula.numerics.metric import Metric
+from vincula.numerics.rank import negligible
 
 Viewpoint = Literal["efficiency", "accuracy"]
 Convention = Literal["invariant", "printed"]
@@ -125,14 +126,12 @@ class Ellipsoid:
 
         Raises:
             ShapeError: Not one number a component.
-            ModelError: The direction has no weighted component.
+            ModelError: The zero vector, or a direction that the weights ignore.
         """
         d = checked(direction, "direction", (len(self.components),))
         weighted = self.task_weight.without_ignored(d)
-        if d.any() and not weighted.any():
-            raise ModelError(
-                "the weights ignore every component of this direction: there is nothing to measure"
-            )
+        if d.any() and negligible(float(np.linalg.norm(weighted)), float(np.linalg.norm(d))):
+            raise ModelError("the weights ignore this direction: there is nothing to measure along it")
         return self.set.along(weighted)
 
     def support(self, direction: ArrayLike) -> float:

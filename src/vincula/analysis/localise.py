@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from vincula.arrays import Matrix
-from vincula.numerics.rank import negligible
+from vincula.numerics.rank import decide_rank, negligible
 from vincula.numerics.subspaces import leading_rows
 
 
@@ -19,13 +19,16 @@ def localised(basis: Matrix, preferred: slice | None = None, doubt: float = 0.0)
 
     Args:
         basis: n x k independent columns.
-        preferred: Rows among which pivots are sought; the columns must be independent there.
+        preferred: Rows among which pivots are sought, if the columns are independent there.
         doubt: Relative uncertainty of the subspace: components below it are set to zero.
     """
     k = basis.shape[1]
     if k == 0:
         return basis
-    rows = np.arange(basis.shape[0])[preferred or slice(None)]
+    everywhere = np.arange(basis.shape[0])
+    rows = everywhere[preferred or slice(None)]
+    if decide_rank(basis[rows], scale=1.0, uncertainty={"subspace": doubt}).rank < k:
+        rows = everywhere  # doubtful ranks: the wanted rows cannot tell the columns apart
     chosen = rows[leading_rows(basis[rows], k)]
     simple = basis @ np.linalg.inv(basis[chosen])
     simple = simple / np.abs(simple).max(axis=0)

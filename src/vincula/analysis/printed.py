@@ -14,6 +14,7 @@ import numpy as np
 from vincula.analysis.relation import force_relation
 from vincula.analysis.spectrum import Spectrum, spectrum
 from vincula.arrays import Matrix
+from vincula.errors import WeightError
 from vincula.model import LinearModel
 from vincula.numerics.csd import angles_of_pair
 from vincula.numerics.metric import Metric
@@ -34,10 +35,19 @@ def printed_spectrum(
         kind: Which of the two force ellipsoids.
         task: Metric of wrenches.
         motor: Metric of torques.
+
+    Raises:
+        WeightError: A weight that ignores a component, or requires it to be zero.
     """
+    if not (task.definite and motor.definite):
+        raise WeightError(
+            "the printed convention needs weights above zero on every wrench component and torque"
+        )
     invariant = spectrum(force_relation(model), task, motor)
     stack, d, n_a = _equilibria(model)
     counts = model.ledger.summary
+    if min(counts.as_dict().values()) < 0:
+        return invariant  # contradictory rank decisions, flagged by the counts
     free, carried = counts.static_indeterminacy, counts.structural_wrenches
     structural = stack @ kernel(stack[d : d + n_a], stack.shape[1] - free - carried)
     internal = stack @ kernel(stack[:d], stack.shape[1] - free - counts.internal_torques)

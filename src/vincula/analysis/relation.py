@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from vincula.analysis.graded import GradedParts, graded_equilibria, graded_motions
 from vincula.arrays import Matrix, Vector
@@ -65,7 +66,7 @@ def kinematic_relation(model: LinearModel) -> Relation:
         zero=max(0, counts.redundancy),
         orthonormal=True,
         doubt=ledger.subspace_doubt,
-        graded=lambda task, motor: graded_motions(model, task, motor),
+        graded=partial(graded_motions, model) if _consistent(model) else None,
         alike=_alike(model),
     )
 
@@ -85,7 +86,7 @@ def force_relation(model: LinearModel) -> Relation:
         zero=max(0, counts.internal_torques),
         orthonormal=True,
         doubt=ledger.subspace_doubt,
-        graded=lambda task, motor: graded_equilibria(model, task, motor),
+        graded=partial(graded_equilibria, model) if _consistent(model) else None,
         alike=_alike(model),
     )
 
@@ -104,6 +105,11 @@ def internal_relation(model: LinearModel) -> Relation:
         orthonormal=False,
         doubt=ledger.subspace_doubt,
     )
+
+
+def _consistent(model: LinearModel) -> bool:
+    """Whether no rank decision contradicts another: dimensions then fit together."""
+    return min(model.ledger.summary.as_dict().values()) >= 0
 
 
 def _alike(model: LinearModel) -> bool:

@@ -59,8 +59,10 @@ def leading_rows(basis: Matrix, count: int) -> list[int]:
     chosen: list[int] = []
     for _ in range(count):
         lengths = np.linalg.norm(left, axis=1)
-        lengths[chosen] = 0.0
+        lengths[chosen] = -1.0
         chosen.append(int(np.argmax(lengths >= (1.0 - TIE) * lengths.max())))
+        if lengths[chosen[-1]] <= 0.0:
+            continue
         direction = left[chosen[-1]] / lengths[chosen[-1]]
         left = left - np.outer(left @ direction, direction)
     return chosen
