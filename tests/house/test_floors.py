@@ -35,6 +35,7 @@ ROOMS_OF = {
     "matplotlib": {"view"},
     "mpl_toolkits": {"view"},
     "mujoco": {"files", "adapters"},
+    "pinocchio": {"adapters"},
     "flint": {"numerics"},
 }
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from vincula.errors import MissingExtraError, ModelError, UnknownNameError
+from vincula.adapters.members import member_named
+from vincula.errors import MissingExtraError, ModelError
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import _All
 from vincula.model import LinearModel
@@ -122,7 +123,7 @@ def _prepared(
     axes: Literal["ground", "body"],
 ) -> Mechanism:
     """The mechanism of a simulation with motors, locks, contacts and reference member as asked for."""
-    body, frame = _reference(mechanism := simulation(model, data), reference)
+    body, frame = member_named(mechanism := simulation(model, data), reference)
     if contacts:
         mechanism = _with_contacts(mechanism, model, data, body)
     mechanism = mechanism.with_lock(lock)
@@ -192,19 +193,6 @@ def _check(model: Any, data: Any) -> None:
         raise ModelError(
             f"the data belongs to another model: it has {len(data.qpos)} positions, the model {model.nq}"
         )
-
-
-def _reference(mechanism: Mechanism, text: str) -> tuple[str, str | None]:
-    """Body and site of `BODY`, `SITE` or `BODY@SITE`."""
-    if text in mechanism.body or text in ("ground", "world"):
-        return text, None
-    sites = {frame.name: frame.body for frame in mechanism.frames}
-    if text in sites:
-        return sites[text], text
-    body, at, site = text.rpartition("@")
-    if at and body in mechanism.body:
-        return body, site
-    raise UnknownNameError("body or site", text, [*mechanism.body, *sites])
 
 
 def _with_contacts(mechanism: Mechanism, model: Any, data: Any, member: str) -> Mechanism:
