@@ -41,6 +41,8 @@ def checked(
     """
     expected = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
     try:
+        if np.iscomplexobj(values):  # numpy would drop the imaginary part with no more than a warning
+            raise TypeError
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise ShapeError(name, np.shape(_as_object(values)), f"numbers of shape {expected}") from None

@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
 
 RowKind = Literal["contact", "member cut", "loop cut", "coupling", "drive"]
+
+
+class _All:
+    """The type of `ALL`."""
+
+    def __repr__(self) -> str:
+        return "ALL"
+
+
+ALL: Final = _All()
+"""Every unlocked joint axis that is not part of a free joint; of bare matrices every column."""
+
+
+def power_of_two(length: float) -> float:
+    """The power of two nearest to a positive length (in ratio): scaling by it is exact."""
+    return float(2.0 ** round(math.log2(length)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@ every analysis starts from one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,12 +17,13 @@ from numpy.typing import ArrayLike
 
 from vincula.arrays import Matrix, Vector, checked, frozen
 from vincula.errors import DuplicateNameError, ModelError, ShapeError, UnknownNameError
-from vincula.labels import BodyMotions, Column, Cut, Row, ScaledMatrices, Uncertainty
+from vincula.labels import BodyMotions, Column, Cut, Row, ScaledMatrices, Uncertainty, _All, power_of_two
 from vincula.spatial.space import PLANAR, SPATIAL, Space
 
 if TYPE_CHECKING:
     from vincula.numerics.ledger import RankLedger
     from vincula.weights import Weights
+
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
@@ -65,6 +67,7 @@ class LinearModel:
 
     def __post_init__(self) -> None:
         m = len(self.rows)
+        _refuse_bad_length(self.length)
         for name, matrix, shape in (
             ("jacobian_active", self.jacobian_active, (m, len(self.motors))),
             ("jacobian_passive", self.jacobian_passive, (m, len(self.passives))),
@@ -80,7 +83,7 @@ class LinearModel:
     def from_matrices(
         J: ArrayLike,
         G: ArrayLike,
-        active: Sequence[int | str] | Sequence[bool],
+        active: Sequence[int | str] | Sequence[bool] | str | _All,
         *,
         columns: Sequence[str] | None = None,
         rows: Sequence[str] | None = None,
@@ -94,12 +97,13 @@ class LinearModel:
         Args:
             J: m x n Jacobian, rows already selected.
             G: d x m grasp matrix, as in w = G f.
-            active: Indices (or names in `columns`) of the active columns, or n booleans.
+            active: Indices (or names in `columns`) of the active columns, or n booleans; `ALL` for
+                every column.
             columns: Names of the n joints, `q1` ... by default.
             rows: Names of the m rows, `row1` ... by default.
             linear_columns: For every column, whether its rate is in m/s (default: rad/s).
             linear_rows: For every row, whether it is in m/s (default: m/s).
-            length: Characteristic length [m]; without one nothing is scaled.
+            length: Characteristic length [m], rounded to a power of two; without one nothing is scaled.
             name: Name of the mechanism in results.
 
         Raises:
@@ -107,6 +111,7 @@ class LinearModel:
             NonFiniteError: NaN or infinity in J or G.
             UnknownNameError: An active column that does not exist.
             DuplicateNameError: A name, or an active column, given twice.
+            ModelError: A length that is not positive, or an active column that is neither index nor name.
         """
         jacobian = checked(J, "J", (None, None))
         m, n = jacobian.shape
@@ -114,6 +119,7 @@ class LinearModel:
         d = grasp.shape[0]
         names = _names(columns, n, "q", "columns")
         row_names = _names(rows, m, "row", "rows")
+        _refuse_bad_length(length)
         col_linear = _flags(linear_columns, n, False, "linear_columns")
         row_linear = _flags(linear_rows, m, True, "linear_rows")
         chosen = _active_indices(active, names)
@@ -127,7 +133,7 @@ class LinearModel:
             motors=tuple(column[i] for i in chosen),
             passives=tuple(column[i] for i in rest),
             space={3: PLANAR, 6: SPATIAL}.get(d),
-            length=length,
+            length=length if length is None else power_of_two(length),
             mechanism=name,
         )
 
@@ -233,7 +239,21 @@ def _flags(given: Sequence[bool] | None, count: int, default: bool, what: str) -
     return [bool(value) for value in given]
 
 
-def _active_indices(active: Sequence[int | str] | Sequence[bool], names: Sequence[str]) -> list[int]:
+def _refuse_bad_length(length: object) -> None:
+    number = isinstance(length, (int, float, np.integer, np.floating)) and not isinstance(length, bool)
+    if length is not None and not (number and math.isfinite(float(length)) and float(length) > 0.0):  # type: ignore[arg-type]
+        raise ModelError(f"characteristic length is {length!r}: give a positive number of metres, or None")
+
+
+def _active_indices(
+    active: Sequence[int | str] | Sequence[bool] | str | _All, names: Sequence[str]
+) -> list[int]:
+    if isinstance(active, _All) or (isinstance(active, str) and active == "all" and "all" not in names):
+        return list(range(len(names)))
+    if isinstance(active, str):
+        return [_active_index(active, names)]
+    if not isinstance(active, Iterable):
+        raise ModelError(f"active is {active!r}: give a list of indices or names, booleans, or ALL")
     given = list(active)
     if given and all(isinstance(a, (bool, np.bool_)) for a in given):
         if len(given) != len(names):

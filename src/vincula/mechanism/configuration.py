@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from vincula.arrays import Vector, checked, frozen
-from vincula.errors import ModelError, UnknownNameError
+from vincula.errors import ModelError, UnknownNameError, listing
 
 
 class Configuration(Mapping[str, Vector]):
@@ -50,8 +50,13 @@ class Configuration(Mapping[str, Vector]):
             UnknownNameError: A joint that has no value here.
             ShapeError: The wrong number of values.
             NonFiniteError: NaN or infinity.
-            ModelError: A quaternion of length zero.
+            ModelError: A quaternion of length zero, or no mapping at all.
         """
+        if not isinstance(values, Mapping):
+            raise ModelError(
+                f"a configuration maps joint names to values, got {type(values).__name__}: "
+                f"give {{joint: value}} for {listing(self)}"
+            )
         merged = dict(self._values)
         for joint, value in values.items():
             if joint not in merged:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vincula.arrays import Vector
+from vincula.labels import power_of_two
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import motion
 from vincula.mechanism.parts import GROUND, ContactPart, Joint
@@ -89,4 +90,4 @@ def characteristic_length(mechanism: Mechanism) -> float:
     farthest = float(np.abs([centre, *points]).max())
     if negligible(distance, farthest) or not math.isfinite(distance):
         return 1.0
-    return 2.0 ** round(math.log2(distance))
+    return power_of_two(distance)

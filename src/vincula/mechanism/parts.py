@@ -6,6 +6,7 @@ build these directly; people draw mechanisms in ground axes with the constructor
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal
@@ -14,6 +15,8 @@ import numpy as np
 
 from vincula.arrays import Vector, checked, frozen
 from vincula.errors import ModelError
+from vincula.labels import ALL as ALL  # noqa: PLC0414  part of this module's names
+from vincula.labels import _All as _All  # noqa: PLC0414
 from vincula.spatial.poses import Pose
 
 GROUND: Final = "ground"
@@ -25,17 +28,6 @@ ROTATION_ERROR: Final = 1e-6
 
 SMALLEST_DIRECTION: Final = 1e-9
 """Directions shorter than this are refused: nobody means them, and they amplify rounding."""
-
-
-class _All:
-    """The type of `ALL`."""
-
-    def __repr__(self) -> str:
-        return "ALL"
-
-
-ALL: Final = _All()
-"""Every unlocked joint axis that is not part of a free joint."""
 
 
 def _checked_pose(what: str, pose: Pose) -> Pose:
@@ -306,3 +298,8 @@ class Precision:
     digits_angle: float = 0.0
     tolerance_length: float = 0.0
     tolerance_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in ((name, getattr(self, name)) for name in self.__slots__):
+            if not 0.0 <= value < math.inf:
+                raise ModelError(f"{name.replace('_', ' of ')} is {value}: give zero or a positive number")
