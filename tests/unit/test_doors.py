@@ -74,3 +74,11 @@ def test_one_component_by_its_name() -> None:
     ellipsoid = _ellipsoid()
     assert ellipsoid.project("vx").components == ("vx",)
     assert ellipsoid.project("vx").support([1]) == pytest.approx(ellipsoid.support([1, 0, 0]), rel=1e-12)
+
+
+def test_a_planar_joint_has_an_axis_as_in_native_files() -> None:
+    slide = vc.PlanarJoint("p", "ground", "puck", at=(0, 0, 1), axis=(0, 1, 0))
+    puck = vc.Mechanism.spatial([slide], reference=vc.Reference("puck"), active=["p"])
+    structural = vc.analyze(puck.linearize(), vc.Weights()).forces.structural.wrench
+    assert structural.shape == (6, 3)
+    assert np.abs(structural[[0, 2, 4]]).max() < 1e-12  # fx, fz and my do work

@@ -42,9 +42,9 @@ def Spherical(name: str, first: str, second: str, at: Place) -> DrawnJoint:
     return DrawnJoint(name, "spherical", first, second, at)
 
 
-def PlanarJoint(name: str, first: str, second: str, at: Place, normal: Place = (0, 0, 1)) -> DrawnJoint:
-    """A planar joint: two translations in, one rotation about the normal of, a plane."""
-    return DrawnJoint(name, "planar", first, second, at, normal)
+def PlanarJoint(name: str, first: str, second: str, at: Place, axis: Place = (0, 0, 1)) -> DrawnJoint:
+    """A planar joint: two translations normal to `axis`, one rotation about it."""
+    return DrawnJoint(name, "planar", first, second, at, axis)
 
 
 def Fixed(name: str, first: str, second: str, at: Place | None = None) -> DrawnJoint:
