@@ -148,6 +148,7 @@ class _Loader:
 
     def _xml(self, source: Source) -> Loaded:
         from vincula.files.native import Loaded
+        from vincula.files.xmltree import parse_xml
 
         root = xml_root(source)
         if root in ("mujoco", "mujocoinclude"):
@@ -163,6 +164,8 @@ class _Loader:
             from vincula.files.sdf import load_sdf
 
             return Loaded(*load_sdf(source, self._limits))
+        if not root:
+            parse_xml(source, self._limits)  # refuses document types, broken XML and files without elements
         raise FileError(f"{source.file}: {_other_xml(root)}; files that can be read: {listing(FORMATS)}")
 
 

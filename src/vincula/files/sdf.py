@@ -14,7 +14,7 @@ from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.problems import Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, RobotDraft
-from vincula.files.sdf_frames import SdfFrames
+from vincula.files.sdf_frames import MODEL, SdfFrames
 from vincula.files.sdf_joints import SdfJoints, end_of
 from vincula.files.source import Source, open_source
 from vincula.files.xmltree import Element, parse_xml
@@ -70,6 +70,7 @@ class _SdfReader:
         self.report = LoadReport(source.file, "SDF")
         self.draft = RobotDraft(source.file, self.problems, directed=False)
         self.frames = SdfFrames(self.problems, self.values)
+        self.names = {""}
         self.version = 0.0
 
     def read(self, root: Element) -> None:
@@ -89,7 +90,7 @@ class _SdfReader:
                 self.problems.add(
                     other.place, f"<{other.tag}> cannot be read: expected one <model>", unsupported=True
                 )
-        if len(models) != 1:
+        if len(models) != 1 and len(models) == len(root.children):
             self.problems.add(root.place, got=f"{len(models)} models", expected="one <model> in <sdf>")
         self.problems.refuse_if_any()
         self._model(models[0])
@@ -116,8 +117,12 @@ class _SdfReader:
         for frame in frames:
             self.frames.add_frame(frame, frame.name)
         joints = [e for e in model.find_all("joint") if self._named(e)]
+        known = {*self.frames.names, *(joint.name for joint in joints)}
         for joint in joints:
-            self.frames.add_joint(joint, joint.name, end_of(joint, "child", self.values))
+            child = end_of(joint, "child", self.values)
+            if child and child not in known:
+                self.problems.add(joint.place, got=f"child {shown(child)}", name=child, choices=known)
+            self.frames.add_joint(joint, joint.name, child if child in known else MODEL)
         self.problems.refuse_if_any()
         self.frames.check()
         self.problems.refuse_if_any()
@@ -132,9 +137,10 @@ class _SdfReader:
 
     def _named(self, element: Element) -> bool:
         name = self.values.name(element)
-        if name and name in self.frames.names:
+        if name in self.names:
             self.problems.add(element.place, f"the name {shown(name)} is used twice in the model")
             return False
+        self.names.add(name)
         return bool(name)
 
     def _link(self, element: Element) -> None:

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from vincula.files.problems import Place, Problems, shown
 from vincula.files.robot_graph import WORLD
 from vincula.files.xmltree import Element
@@ -18,6 +20,8 @@ from vincula.spatial.poses import Pose, rotation_from_quaternion_wxyz
 
 MODEL: Final = "__model__"
 """The implicit frame of the model."""
+
+_SHORTEST_QUATERNION: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +46,7 @@ class SdfFrames:
         self._problems, self._values = problems, values
         self._frames: dict[str, _Frame] = {}
         self._links: set[str] = set()
+        self._lost: set[str] = set()
         self._poses: dict[str, Pose] = {MODEL: Pose.identity(3)}
 
     def add_model(self, model: Element, canonical_link: str) -> None:
@@ -85,27 +90,28 @@ class SdfFrames:
 
     def is_link(self, name: str) -> bool:
         """Whether a name is that of a link, or the world."""
-        return name in self._links
+        return name in self._links or name == WORLD
 
     def link_of(self, name: str) -> str:
         """The link that a frame is attached to; empty after a problem (a circle, a name unknown)."""
-        seen = [name]
+        seen = {name}
         while name not in self._links:
             frame = self._frames.get(name)
             if frame is None or frame.attached_to in seen:
                 return ""
             name = frame.attached_to
-            seen.append(name)
+            seen.add(name)
         return name
 
     def pose(self, name: str) -> Pose | None:
         """Pose of a frame in the model's frame; None after a problem."""
-        chain: list[str] = []
+        chain: dict[str, None] = {}
         while name not in self._poses:
             frame = self._frames.get(name)
-            if frame is None or name in chain:
+            if frame is None or name in chain or name in self._lost:
+                self._lost.update(chain)
                 return None
-            chain.append(name)
+            chain[name] = None
             name = frame.relative_to
         pose = self._poses[name]
         for step in reversed(chain):
@@ -142,9 +148,17 @@ class SdfFrames:
             values = self._values.numbers(found, found.text, 7, what="pose")
             if values is None:
                 return Pose.identity(3), relative_to
+            if float(np.linalg.norm(values[3:])) < _SHORTEST_QUATERNION:
+                self._problems.add(
+                    found.place, got="a quaternion of length zero", expected="a unit quaternion"
+                )
+                return Pose.identity(3), relative_to
             x, y, z, w = values[3:]
             return Pose.at(values[:3], rotation_from_quaternion_wxyz([w, x, y, z])), relative_to
         words = found.text.split()
+        if len(words) != 6:
+            self._values.numbers(found, found.text, 6, what="pose")
+            return Pose.identity(3), relative_to
         position = self._values.numbers(found, " ".join(words[:3]), 3, what="pose", unit="length")
         degrees = found.attributes.get("degrees", "").strip() in ("true", "1")
         turn = self._values.angles(found, " ".join(words[3:]), what="pose", degrees=degrees)

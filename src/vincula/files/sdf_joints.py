@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
+
 from vincula.arrays import Vector
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
@@ -12,7 +14,7 @@ from vincula.files.robot_graph import WORLD, DraftJoint, RobotDraft
 from vincula.files.sdf_frames import SdfFrames
 from vincula.files.xmltree import Element
 from vincula.files.xmlvalues import XmlValues
-from vincula.mechanism.parts import Coupling
+from vincula.mechanism.parts import SMALLEST_DIRECTION, Coupling
 from vincula.mechanism.parts import Limits as JointLimits
 from vincula.spatial.poses import Pose
 
@@ -88,11 +90,13 @@ class SdfJoints:
                 self.report.ignored(part.tag, element.name, _JOINT_PARTS[part.tag])
         parent, child = (end_of(element, tag, self.values) for tag in ("parent", "child"))
         for end, tag in ((parent, "parent"), (child, "child")):
-            if end not in self.frames.names:
+            if end and end not in self.frames.names:
                 self.values.problems.add(
                     element.place, got=f"{tag} {shown(end)}", name=end, choices=self.frames.names
                 )
                 return
+        if not (parent and child):
+            return
         placed = self._joint_frames(element.name, parent, child)
         axes = self._axes(element, TYPES[written], placed[1])
         if axes is None:
@@ -189,6 +193,9 @@ class SdfJoints:
             if axis is None:
                 return None
             axes.append(self._in_joint(element.name, found, xyz, axis))
+        if len(axes) == 2 and float(np.linalg.norm(np.cross(axes[0], axes[1]))) < SMALLEST_DIRECTION:
+            self.values.problems.add(element.place, "the two axes of a universal joint are parallel")
+            return None
         return axes
 
     def _in_joint(self, joint: str, axis: Element | None, xyz: Element | None, vector: Vector) -> Vector:

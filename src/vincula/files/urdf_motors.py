@@ -37,7 +37,7 @@ def read_transmission(element: Element, draft: RobotDraft, values: XmlValues, re
     elif kind in TYPES[1:] and len(joints) == 2 and len(actuators) == 2:
         _two_motors(kind, element, joints, actuators, draft, values)
         report.used("transmission", element.name, f"motors {', '.join(actuators)} drive {', '.join(joints)}")
-    else:
+    elif len(joints) == len(list(element.find_all("joint"))):
         values.problems.add(
             element.place,
             got=f"a transmission {shown(kind)} with {len(joints)} joints and {len(actuators)} actuators",

@@ -65,7 +65,7 @@ URDF = {
     "urdfdom proposal": """
   <constraint name="o5" type="continuous">
     <parent link="base"/> <parent_origin xyz="1 -2 0"/> <parent_axis xyz="0 0 1"/>
-    <child link="rocker"/> <child_origin xyz="0 -1 0"/> <child_axis xyz="0 0 -1"/>
+    <child link="rocker"/> <child_origin xyz="0 -1 0" rpy="3.141592653589793 0 0"/> <child_axis xyz="0 0 -1"/>
   </constraint>""",
 }
 

@@ -93,7 +93,8 @@ URDF = {
   <joint name="o3" type="continuous">
     <parent link="coupler"/> <child link="pin"/> <origin xyz="2 1 0"/> <axis xyz="0 0 1"/>
   </joint>
-  <joint name="glue" type="fixed"> <parent link="rocker"/> <child link="pin"/> <origin xyz="-1 2 0"/> </joint>""",
+  <joint name="glue" type="fixed"> <parent link="rocker"/> <child link="pin"/>
+    <origin xyz="-1 2 0"/> </joint>""",
 }
 """The loop in dialects of URDF; it stands below the tree."""
 
@@ -119,7 +120,9 @@ GEPETTO_TREE = """
   <joint name="o3" type="continuous">
     <parent link="coupler"/> <child link="pin"/> <origin xyz="2 1 0"/> <axis xyz="0 0 1"/>
   </joint>
-  <joint name="to_hole" type="fixed"> <parent link="rocker"/> <child link="hole"/> <origin xyz="-1 2 0"/> </joint>
+  <joint name="to_hole" type="fixed">
+    <parent link="rocker"/> <child link="hole"/> <origin xyz="-1 2 0"/>
+  </joint>
 """
 GEPETTO = {
     "6d": "closed_loop: [[pin, hole]]\ntype: [6d]\nname_mot: [o1]\n",
@@ -135,14 +138,16 @@ SDF_GRAPH = """<sdf version="1.9"><model name="four-bar">
   <joint name="o2" type="revolute"><parent>crank</parent><child>coupler</child>
     <axis><xyz>0 0 1</xyz></axis></joint>
   <joint name="o3" type="revolute"><parent>coupler</parent><child>rocker</child>
-    <pose relative_to="rocker">-1 2 0 0 0 0</pose><axis><xyz expressed_in="__model__">0 0 1</xyz></axis></joint>
+    <pose relative_to="rocker">-1 2 0 0 0 0</pose>
+    <axis><xyz expressed_in="__model__">0 0 1</xyz></axis></joint>
   <joint name="o4" type="revolute"><parent>world</parent><child>rocker</child>
     <axis><xyz>0 0 1</xyz></axis></joint>
 </model></sdf>"""
 
 SDF_BALL = SDF_GRAPH.replace(
     """  <joint name="o3" type="revolute"><parent>coupler</parent><child>rocker</child>
-    <pose relative_to="rocker">-1 2 0 0 0 0</pose><axis><xyz expressed_in="__model__">0 0 1</xyz></axis></joint>
+    <pose relative_to="rocker">-1 2 0 0 0 0</pose>
+    <axis><xyz expressed_in="__model__">0 0 1</xyz></axis></joint>
 """,
     """  <drake:ball_constraint>
     <drake:ball_constraint_body_A>coupler</drake:ball_constraint_body_A>

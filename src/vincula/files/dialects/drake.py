@@ -91,7 +91,8 @@ def _between_points(
     names = [_text(element, prefix + tag, values) for tag in ("body_A", "body_B")]
     for name, tag in zip(names, ("p_AP", "p_BQ"), strict=True):
         place = _place(element, name, frames, draft, values)
-        point = values.numbers(element, _text(element, prefix + tag, values), 3, what=tag, unit="length")
+        text = _text(element, prefix + tag, values)
+        point = values.numbers(element, text, 3, what=tag, unit="length") if text else None
         if place is not None and point is not None:
             ends.append((place[0], place[1] @ Pose.at(point)))
     if len(ends) != 2:
@@ -104,7 +105,8 @@ def _between_points(
         report.note(f"<{element.tag}> with a stiffness is a spring, not a rod: it is left out")
     else:
         tag = prefix + "distance"
-        distance = values.numbers(element, _text(element, tag, values), 1, what=tag, unit="length")
+        text = _text(element, tag, values)
+        distance = values.numbers(element, text, 1, what=tag, unit="length") if text else None
         if distance is not None:
             add_rod(element, draft, values, report, (ends[0], ends[1]), float(distance[0]))
 
