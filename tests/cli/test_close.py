@@ -119,7 +119,12 @@ def test_bad_usage(run, words: tuple[str, ...], message: str) -> None:
 
 
 def test_analyze_refuses_open_loops_unless_asked_to_close(run, run_json) -> None:
-    assert "nothing was moved" in run("analyze", FIVE_BAR, "--at", "o1=-0.1", code=1).stderr
+    refusal = run("analyze", FIVE_BAR, "--at", "o1=-0.1", code=1).stderr
+    assert "nothing was moved. The closest closed configuration found moves o1 by" in refusal
+    assert "--close closes it" in refusal
+    hopeless = run("analyze", FIVE_BAR, "--at", "o1=0.1", "--lock", "o1,o2,o3", code=1).stderr
+    assert "It cannot be closed from here" in hopeless
+    assert "Lengths that cannot meet: o5 to o4" in hopeless
     result = run("analyze", FIVE_BAR, "--at", "o1=-0.1", "--close", "--json")
     assert "closing moved" in result.stderr
     found = json.loads(result.stdout)

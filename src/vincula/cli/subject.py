@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeVar, cast
 
 from vincula.cli.exits import BadOptionError
-from vincula.errors import MissingReferenceError, ModelError, UnknownNameError
+from vincula.errors import ClosureError, MissingReferenceError, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
     from vincula.files.report import LoadReport
@@ -60,7 +60,26 @@ class Subject:
         if self.mechanism.reference is None:
             missing = MissingReferenceError(body.name for body in self.mechanism.bodies)
             raise BadOptionError(f"{missing}. Say --reference BODY.")
-        return self.mechanism.linearize(self.configuration)
+        try:
+            return self.mechanism.linearize(self.configuration)
+        except ClosureError as error:
+            raise _explained(error, self) from None
+
+
+def _explained(error: ClosureError, subject: Subject) -> ClosureError:
+    """The refusal of an open loop with the closest closed configuration, or why there is none."""
+    from vincula.mechanism.open_loops import closest_closed
+
+    closest, text = closest_closed(subject.mechanism, subject.configuration)
+    advice = (
+        "--close closes it, with the joints that --at names held where they can be."
+        if closest is not None
+        else "`vincula close` says more."
+    )
+    first = str(error).partition(" Give values")[0]
+    return ClosureError(
+        f"{first} {text} {advice}", loop=error.loop, gap=error.gap, **{**error.details, "closest": closest}
+    )
 
 
 def read_subject(

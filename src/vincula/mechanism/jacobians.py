@@ -93,7 +93,7 @@ def _closed(mechanism: Mechanism, q: Configuration, frames: PlacedFrames) -> flo
         more = f" ({others} more open)" if others else ""
         raise ClosureError(
             f"{worst}{more}: the configuration does not satisfy the mechanism, and nothing was moved. "
-            "Give values for all joints of the loop that close it, or ask for closing.",
+            "Give values for all joints of the loop that close it, or close it with `Mechanism.close`.",
             loop=worst.name,
             gap=worst.gap,
             residuals=residuals,
