@@ -95,7 +95,8 @@ def engine_kernel(model: Any, q: Vector, frame: str, constraints: Any = ()) -> M
     if constraints:
         states = [one.createData() for one in constraints]
         for one, state in zip(constraints, states, strict=True):
-            one.calc(model, data, state)  # three rows are in axes that only this brings up to date
+            if hasattr(one, "calc"):  # since 4: three rows are in axes that only this brings up to date
+                one.calc(model, data, state)
         rows = pin.getConstraintsJacobian(model, data, list(constraints), states)
         motions = null_space(rows, rcond=1e-9)
     jacobian = pin.getFrameJacobian(

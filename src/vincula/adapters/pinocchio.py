@@ -67,7 +67,8 @@ def mechanism_of(model: Any, q: ArrayLike | None = None, constraints: Iterable[A
 
     Bodies are Pinocchio's moving frames (one a joint), called by the body frame that coincides with
     them, else by the joint; all frames are named frames.  A composite joint `j` is a chain of joints
-    `j.1`, `j.2` ...; so are three Euler angles and three translations.  No joint has a motor.
+    `j.1`, `j.2` ...; so are three Euler angles and three translations.  Mimic joints are coupled to
+    their leader, if the model was built with them (`mimic=True`).  No joint has a motor.
 
     Args:
         model: A `pinocchio.Model`.
