@@ -266,7 +266,7 @@ class RobotDraft:
         return poses
 
     def _motors(self) -> dict[str, str]:
-        """Motors by name; where the file names none, every joint that nothing marks as passive."""
+        """Motors by name; where the file names none, every joint that nothing marks as passive but balls."""
         if self.motors is not None:
             return {name: axis for name, axis in self.motors.items() if axis not in self.passive}
         followers = {axis for coupling in self.couplings for axis in list(coupling.rates)[:1]}
@@ -274,7 +274,9 @@ class RobotDraft:
         moving = [
             j.name
             for j in self.joints
-            if not j.closure and j.type not in ("fixed", "free") and j.name not in self.passive | followers
+            if not j.closure
+            and j.type not in ("fixed", "free", "spherical")
+            and j.name not in self.passive | followers
         ]
         if moving and not self.passive:
             self.notes.append("the file marks no motors: every joint that follows no other counts as one")
