@@ -10,6 +10,8 @@ import pytest
 COMMANDS = {
     "analyze": ["analyze", "example:five-bar"],
     "compare": ["compare", "example:five-bar", "--active", "all"],
+    "close": ["close", "example:five-bar"],
+    "follow": ["follow", "example:five-bar", "--to", "o1=-0.1"],
     "inspect": ["inspect", "example:five-bar"],
 }
 
