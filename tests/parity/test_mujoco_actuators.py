@@ -198,3 +198,18 @@ def test_refusals() -> None:
         actuator_jacobian(model, data, "tool", hold=["o9"])
     with pytest.raises(vc.UnknownNameError, match="toool"):
         actuator_jacobian(model, data, "toool")
+
+
+@pytest.mark.parametrize(("bend", "singular"), [(0.0, True), (0.3, False)])
+def test_straight_wrist_is_singular(models: Path, bend: float, singular: bool) -> None:
+    """Forearm roll and wrist rotation in one line turn against each other; the maps exist all the same."""
+    model, data = simulation(models / "aloha_mink" / "aloha_nomesh.xml")
+    data.qpos[:] = 0.0
+    data.qpos[model.joint("right/wrist_angle").qposadr[0]] = bend
+    found = actuator_jacobian(model, data, "right/gripper_base")
+    assert found.twist_from_rates.matrix is not None
+    assert np.linalg.matrix_rank(found.twist_from_rates.matrix, tol=1e-6) == (5 if singular else 6)
+    assert found.singular == singular
+    for one in found.singularities:
+        assert one.kind == "motors without authority"
+        assert set(one.joints) == {"right/forearm_roll", "right/wrist_rotate"}
