@@ -62,7 +62,7 @@ def test_limits_are_those_given() -> None:
 
 
 def test_comments_with_hyphens_are_skipped_and_reported() -> None:
-    text = '<a>\n<!-- x --- y\n-- --><b/><![CDATA[<!-- -- -->]]><!---->\n<!-- z --->é<c/></a>'
+    text = "<a>\n<!-- x --- y\n-- --><b/><![CDATA[<!-- -- -->]]><!---->\n<!-- z --->é<c/></a>"
     report = LoadReport("f.xml", "XML")
     root = parse_xml(decode(text.encode(), "f.xml"), report=report)
     b, c = root.children
