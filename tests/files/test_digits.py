@@ -44,3 +44,11 @@ def test_numbers(text: str) -> None:
 )
 def test_no_numbers(text: str) -> None:
     assert not is_number(text)
+
+
+def test_directions_need_no_significant_digits() -> None:
+    # A length of 0.00001 may be meant exactly; beside 1.0000 it is a rounded direction.
+    assert half_unit("0.00001") == 0.0
+    assert half_unit("0.00001", length=False) == pytest.approx(5e-6, rel=1e-12)
+    assert half_unit("0.0000", length=False) == pytest.approx(5e-5, rel=1e-12)
+    assert half_unit("1.57", length=False) == 0.0

@@ -16,7 +16,7 @@ from vincula.analysis.equilibrium import ForceBlocks, force_blocks
 from vincula.analysis.maps import LinearMap, torque_from_wrench, twist_from_rates
 from vincula.analysis.mobility import MotionBlocks, motion_blocks
 from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights, task_quantity
-from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
+from vincula.errors import FileError, MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
 from vincula.numerics.ledger import RankLedger
 from vincula.numerics.metric import Metric, identity_metric
@@ -111,9 +111,16 @@ class Analysis:
         return as_object(self)
 
     def save(self, path: str | Path) -> None:
-        """Write the JSON object to a file."""
+        """Write the JSON object to a file.
+
+        Raises:
+            FileError: The file cannot be written.
+        """
         text = json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
-        Path(path).write_text(text + "\n", encoding="utf-8")
+        try:
+            Path(path).write_text(text + "\n", encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{path}: the analysis cannot be written ({error.strerror})") from None
 
     def __str__(self) -> str:
         from vincula.analysis.report import as_text

@@ -147,9 +147,9 @@ def _page(ranked: Sequence[RankedDesign], criterion: str, on: Part) -> Page:
         Column("", "right"),
         Column("motors", fold=True),
         Column("index", "right"),
-        Column("kinematic", fold=True),
-        Column("active force", fold=True),
-        Column("redundancy", "right"),
+        Column("kine-\nmatic", fold=True),
+        Column("active\nforce", fold=True),
+        Column("redun-\ndancy", "right"),
         Column("internal\ntorques", "right"),
         Column("structural\nwrenches", "right"),
     ]

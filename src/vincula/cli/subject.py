@@ -152,6 +152,8 @@ def split_reference(mechanism: Mechanism, text: str) -> tuple[str, list[float] |
         if carriers:
             raise BadOptionError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}")
         raise UnknownNameError("body", body, mechanism.body)
+    if at and not point and text not in mechanism.body:
+        raise BadOptionError(f"{text!r} names no point: say BODY, BODY@FRAME or BODY@x,y,z")
     if not point:
         return body, None, None
     coordinates = _numbers(point)

@@ -1,8 +1,9 @@
 """How exactly a typed number is known: half a unit of its last digit.
 
-A number counts as rounded when it was typed with at least four digits after the point, at least
-four of its digits being significant: 1.5708 and 0.02645 may be rounded, 1.57 and 0.0061 are taken as
-meant.  So 6.1 mm is exact whether it is typed in millimetres or in metres.
+A number counts as rounded when it was typed with at least four digits after the point; a length only
+if four of its digits are significant as well: 1.5708 and 0.02645 may be rounded, 1.57 and 0.0061 are
+taken as meant.  So 6.1 mm is exact whether it is typed in millimetres or in metres.  Angles and
+components of directions have no such choice of unit: 0.00001 beside 1.0000 is a rounded direction.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import re
 from typing import Final
 
 FEWEST_DIGITS: Final = 4
-"""Numbers with fewer digits after the point, or fewer significant ones, are exact."""
+"""Numbers with fewer digits after the point, lengths with fewer significant ones, are exact."""
 
 _NUMBER: Final = re.compile(r"[+-]?(?:([0-9]+)\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?")
 
@@ -21,17 +22,20 @@ def is_number(text: str) -> bool:
     return _NUMBER.fullmatch(text) is not None
 
 
-def half_unit(text: str) -> float:
+def half_unit(text: str, *, length: bool = True) -> float:
     """Half a unit of the last digit of a typed number, in its own unit; 0 where it counts as exact.
 
     Args:
         text: The number as it was typed; `1.5708` gives 5e-5, `1.2345e-3` gives 5e-8, `1.57` gives 0.
+        length: False for angles and components of directions, of which few digits need be significant.
     """
     match = _NUMBER.fullmatch(text)
     if match is None:
         return 0.0
     before, after = match[1] or "", match[2] or match[3] or ""
-    if len(after) < FEWEST_DIGITS or len((before + after).lstrip("0")) < FEWEST_DIGITS:
+    if len(after) < FEWEST_DIGITS:
+        return 0.0
+    if length and len((before + after).lstrip("0")) < FEWEST_DIGITS:
         return 0.0
     power = int(match[4] or 0) - len(after)
     return 0.5 * 10.0**power if -300 < power < 300 else 0.0

@@ -40,10 +40,12 @@ class Measured:
     Attributes:
         value: The number.
         half_unit: Half a unit of its last typed digit, carried through expressions; 0 when exact.
+        angular_half_unit: The same of a plain number that is an angle or a component of a direction.
     """
 
     value: float
     half_unit: float = 0.0
+    angular_half_unit: float = 0.0
 
 
 class ExpressionError(ModelError):

@@ -61,9 +61,9 @@ def _errors(attribute: str, words: list[str], unit: float) -> tuple[float, float
     if attribute == "quat":
         return 0.0, 2 * _direction_error(words)
     if attribute == "euler":
-        return 0.0, unit * max(map(half_unit, words))
+        return 0.0, unit * max(map(_angular, words))
     if attribute == "axisangle":
-        return 0.0, max(_direction_error(words[:3]), unit * half_unit(words[3]))
+        return 0.0, max(_direction_error(words[:3]), unit * _angular(words[3]))
     if attribute == "xyaxes":
         return 0.0, max(_direction_error(words[:3]), _direction_error(words[3:]))
     if attribute in ("axis", "zaxis"):
@@ -73,4 +73,8 @@ def _errors(attribute: str, words: list[str], unit: float) -> tuple[float, float
 
 def _direction_error(words: list[str]) -> float:
     size = math.hypot(*map(float, words))
-    return max(map(half_unit, words)) / size if size > 0 else 0.0
+    return max(map(_angular, words)) / size if size > 0 else 0.0
+
+
+def _angular(word: str) -> float:
+    return half_unit(word, length=False)

@@ -71,7 +71,9 @@ def read_number(value: Any, info: ValidationInfo) -> Measured:
         except ExpressionError as error:
             raise refusal(f"{shown(value)} ({error.reason})", "an expression with a finite value") from None
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        result = Measured(float(value), getattr(value, "half_unit", 0.0))
+        result = Measured(
+            float(value), getattr(value, "half_unit", 0.0), getattr(value, "angular_half_unit", 0.0)
+        )
     else:
         raise refusal(shown(value), number_hint(value))
     if not abs(result.value) <= LARGEST:

@@ -18,20 +18,23 @@ class TypedNumber(float):
     """A decimal number of a file, with half a unit of its last typed digit.
 
     Only numbers with at least four digits after the point are taken for rounded ones (0.7071, 1.5708);
-    shorter ones are exact.
+    shorter ones are exact (see `digits`).
 
     Attributes:
-        half_unit: Half a unit of the last digit, 0 for numbers taken as exact.
+        half_unit: Half a unit of the last digit of a length, 0 for numbers taken as exact.
+        angular_half_unit: The same of an angle or a component of a direction.
         text: The number as it was typed.
     """
 
     half_unit: float
+    angular_half_unit: float
     text: str
 
     def __new__(cls, text: str) -> TypedNumber:
         """The number that `text` spells."""
         number = super().__new__(cls, text)
         number.half_unit, number.text = half_unit(text), text
+        number.angular_half_unit = half_unit(text, length=False)
         return number
 
     def __repr__(self) -> str:

@@ -77,7 +77,8 @@ class Scale:
         values = tuple(number.value for number in numbers)
         size = math.hypot(*values)
         if size > 0.0:
-            self._angle = max(self._angle, max(number.half_unit for number in numbers) / size)
+            off = max(max(number.half_unit, number.angular_half_unit) for number in numbers)
+            self._angle = max(self._angle, off / size)
         return values
 
     def precision(self, base: Precision, declared: PrecisionEntry | None = None) -> Precision:

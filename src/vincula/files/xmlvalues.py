@@ -94,7 +94,7 @@ class XmlValues:
         if unit == "length":
             self.digits.length = max(self.digits.length, half_unit(word))
         elif unit == "angle":
-            self.digits.angle = max(self.digits.angle, half_unit(word))
+            self.digits.angle = max(self.digits.angle, half_unit(word, length=False))
         return value
 
     def direction(self, element: Element, text: str, *, what: str) -> Vector | None:
