@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 LONGEST_JUMP: Final = 0.25
 """Held values are carried to where they are asked for in steps of this size [rad, or lengths L]."""
+TYPED: Final = 100.0
+"""Gaps up to this many times the rounding of typed numbers are put down to it."""
 RADII: Final = (0.3, 0.6, 1.0, 1.5, 2.2, 3.1)
 """Sizes of the random displacements of further starts [rad]; lengths move by a third of it times L."""
 
@@ -227,7 +229,16 @@ def _hints(
     bounds: Limits | None,
     q: Configuration,
 ) -> tuple[str, ...]:
-    """What would close: without the limits, or with what is held given free."""
+    """What would close: exact numbers, no limits, or nothing held."""
+    known = problem.mechanism.precision
+    doubt = known.digits_length / problem.length + known.digits_angle
+    if 0.0 < best.residual <= TYPED * doubt:
+        text = (
+            f"The gap is no larger than what the rounding of typed numbers leaves open ({doubt:.2g} of the "
+            "characteristic length): a loop with more rows than it needs closes only with exact numbers, so "
+            "give them with more digits"
+        )
+        return (text,)
     hints = []
     everything = np.ones(problem.columns, dtype=bool)
     if bounds is not None:

@@ -10,7 +10,7 @@ import pytest
 from tests.unit.mechanism.linkages import circles_meet, five_bar, five_bar_o3, four_bar, joint_point
 
 import vincula as vc
-from vincula.mechanism.parts import Joint
+from vincula.mechanism.parts import Joint, Precision
 from vincula.spatial.poses import Pose
 
 
@@ -198,3 +198,23 @@ def test_one_axis_of_several_is_held() -> None:
     )
     q = mechanism.close(motors={"c.translation": 0.05})
     np.testing.assert_allclose(q["c"], (5.0, 0.05), atol=1e-14)
+
+
+def test_rounded_right_angles_are_told_from_real_gaps() -> None:
+    """A four-bar in space whose last axis is turned by 1.5708 instead of pi/2 closes at home only."""
+    slip = 1.5708 - math.pi / 2
+    at = {"a": (0, 0, 0), "b": (0, 1, 0), "c": (3, 2, 0), "d": (3, 0, 0)}
+    bodies = ["ground", "crank", "coupler", "rocker", "ground"]
+    axes = {"d": (0.0, -math.sin(slip), math.cos(slip))}
+    mechanism = vc.Mechanism.spatial(
+        joints=[
+            vc.Revolute(n, bodies[k], bodies[k + 1], at=p, axis=axes.get(n, (0, 0, 1)))
+            for k, (n, p) in enumerate(at.items())
+        ]
+    )
+    typed = replace(mechanism, precision=Precision(digits_angle=5e-5))
+    with pytest.raises(vc.ClosureError, match="give them with more digits") as refusal:
+        typed.close(motors={"a": 0.5})
+    assert 1e-8 < refusal.value.gap < 1e-4
+    with pytest.raises(vc.ClosureError, match="No closed configuration was found"):
+        mechanism.close(motors={"a": 0.5})
