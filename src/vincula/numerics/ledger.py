@@ -255,6 +255,6 @@ _WORDS: dict[MatrixName, str] = {
     "active+passive": "active+passive constraints",
     "active+member": "active+member constraints",
     "passive+member": "passive+member constraints",
-    "all": "all constraints",
+    "all": "active+passive+member constraints",
     "triple": "test matrix [[J_a J_p 0] [J_a 0 G^T]]",
 }
