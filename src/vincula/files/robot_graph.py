@@ -141,6 +141,7 @@ class RobotDraft:
             FileError: No root, several roots, islands, or anything else a mechanism cannot be.
         """
         self._check_names()
+        self._check_mimics()
         self.problems.refuse_if_any()
         root = self.ground = self.ground or self._root()
         tree = self._tree(root)
@@ -190,6 +191,19 @@ class RobotDraft:
                 self.problems.add(
                     joint.place, f"joint {shown(joint.name)} connects {shown(joint.parent)} to itself"
                 )
+
+    def _check_mimics(self) -> None:
+        """A joint that follows itself over others has no leader."""
+        follows = {c.axes[0]: c.axes[1] for c in self.couplings if c.name.startswith("mimic:")}
+        places = {joint.name: joint.place for joint in self.joints}
+        for start in follows:
+            chain = [start]
+            while (leader := follows.get(chain[-1])) is not None and leader not in chain:
+                chain.append(leader)
+            if leader == start:
+                place = places.get(start, Place(self.file))
+                self.problems.add(place, f"joints mimic each other in a circle: {', '.join(chain)}")
+                return
 
     def _note_parents(self) -> None:
         """In URDF a link with two parents is a surprise: most other readers drop one of them."""
