@@ -33,9 +33,7 @@ def outcome(number: int) -> tuple[str, str]:
     return f"{kind}, {'motors held' if held else 'free'}", _closed(mechanism, start, motors)
 
 
-def _closed(
-    mechanism: Mechanism, start: dict[str, list[float]], motors: dict[str, float]
-) -> str:
+def _closed(mechanism: Mechanism, start: dict[str, list[float]], motors: dict[str, float]) -> str:
     try:
         q = mechanism.close(start, motors=motors)
     except ClosureError as error:
