@@ -104,19 +104,28 @@ def _redundant_motors(model: LinearModel) -> list[str]:
     found = complement(
         model.ledger.subspaces.kernel("active+passive"), alone, model.ledger.summary.redundancy
     )
-    said = []
+    rests = f"while {model.reference!r} rests (redundancy)"
+    said, alone_moving = [], []
     for column in localised(found, slice(0, n_a), model.ledger.subspace_doubt).T:
         motors = _taking_part(column[:n_a], model.motors)
         passives = _taking_part(column[n_a:], model.passives)
+        if len(motors) == 1 and not passives:
+            alone_moving += motors
+            continue
         with_passive = f", together with passive {joint_list(passives)}" if passives else ""
-        rests = f"while {model.reference!r} rests (redundancy)"
         said.append(f"Motors can move {rests}: {joint_list(motors)}{with_passive}.")
+    if len(alone_moving) > 1:
+        said.append(f"Each of these motors can move by itself {rests}: {joint_list(alone_moving)}.")
+    elif alone_moving:
+        said.append(f"Motors can move {rests}: {joint_list(alone_moving)}.")
     return said
 
 
 def _indeterminate(model: LinearModel) -> list[str]:
     """Motions of the member with all motors locked."""
     n_p = len(model.passives)
+    if not np.any(model.grasp):
+        return [f"Nothing holds {model.reference!r}: it moves freely in all {model.dimension} directions."]
     free = model.ledger.subspaces.kernel("passive")
     alone = np.vstack([free, np.zeros((model.dimension, free.shape[1]))])
     found = complement(
