@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from tests.unit.mechanism.linkages import five_bar, five_bar_o3, joint_point
 
 import vincula as vc
@@ -175,3 +176,30 @@ def test_cassie_like_leg_stops_at_its_dead_centre(models: Path) -> None:
         knees.append(float(path.end["motor_knee"][0]))
     assert knees[0] == pytest.approx(knees[1], abs=1e-8)
     assert knees[0] == pytest.approx(-2.3815, abs=1e-4)
+
+
+def test_stewart_platform_stops_where_its_leg_lines_become_dependent() -> None:
+    """Turned about the vertical; the angle is found apart by a root of the determinant of the lines."""
+    mechanism = example("stewart")
+    poses = [_turned(math.radians(a)) for a in (60.0, 120.0, 170.0)]
+    path = mechanism.follow(poses, limits=False)
+    assert path.stopped is not None, str(path)
+    assert [s.kind for s in path.stopped.singularities] == ["platform free"]
+    feet, tops = _stewart_points(mechanism)
+    start = np.array([0.0, 0.0, 2.0])
+
+    def determinant(angle: float) -> float:
+        turn = _turned(angle).rotation
+        return _lines(feet, (tops - start) @ turn.T + start, start)
+
+    grid = np.radians(np.arange(0.0, 170.0, 0.5))
+    signs = np.sign([determinant(angle) for angle in grid])
+    first = int(np.flatnonzero(signs[1:] != signs[:-1])[0])
+    expected = brentq(determinant, grid[first], grid[first + 1], xtol=1e-14)
+    rotation = mechanism.body_poses(path.end)["platform"].rotation
+    assert math.atan2(rotation[1, 0], rotation[0, 0]) == pytest.approx(expected, abs=1e-8)
+
+
+def _turned(angle: float) -> vc.Pose:
+    c, s = math.cos(angle), math.sin(angle)
+    return vc.Pose.at((0.0, 0.0, 2.0), np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
