@@ -147,9 +147,7 @@ def test_a_planar_loop_in_space_is_not_singular() -> None:
     at = {"a": (0, 0, 0), "b": (0, 1, 0), "c": (3, 2, 0), "d": (3, 0, 0)}
     bodies = ["ground", "crank", "coupler", "rocker", "ground"]
     mechanism = vc.Mechanism.spatial(
-        joints=[
-            vc.Revolute(n, bodies[k], bodies[k + 1], at=p) for k, (n, p) in enumerate(at.items())
-        ],
+        joints=[vc.Revolute(n, bodies[k], bodies[k + 1], at=p) for k, (n, p) in enumerate(at.items())],
         reference=vc.Reference("coupler"),
         active=["a"],
     )
