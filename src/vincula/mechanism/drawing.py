@@ -34,6 +34,7 @@ from vincula.spatial.space import PLANAR, Space
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
 
+
 @dataclass(frozen=True, slots=True)
 class In:
     """A position or direction given in the axes of a body or named frame instead of ground axes.
