@@ -77,6 +77,8 @@ def test_a_terminal_without_lines_or_colour() -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_interruption(tmp_path: Path) -> None:
     slow = (
+        # A shell starts background jobs with interrupts ignored, and children inherit that.
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "import vincula.cli.examples as e, time, sys\n"
         "e.examples_command.callback = lambda **_: (print('ready', flush=True), time.sleep(30))\n" + MAIN
     )
