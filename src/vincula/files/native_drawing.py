@@ -109,13 +109,16 @@ def _joints(sketch: Sketch) -> list[DrawnJoint]:
     planar = sketch.drawing.space is PLANAR
     result = []
     for index, entry in enumerate(sketch.entry.joints):
-        drawn = drawn_joint(entry, sketch.scale, planar)
+        drawn = drawn_joint(entry, sketch.scale)
         location: Location = ["joints", index]
         _refuse_ends(sketch, location, entry.bodies)
         if planar and entry.type == "revolute" and entry.axis is not None:
             sketch.problem(
                 [*location, "axis"], "a revolute joint in the plane turns about its normal: leave `axis` out"
             )
+        if not planar and entry.type == "revolute" and entry.axis is None:
+            sketch.problem(location, "the key 'axis' is missing: in space a revolute joint has an axis")
+            continue
         sketch.attempt(location, partial(sketch.drawing.joint, drawn))
         for limit in drawn.limits:
             if limit.lower is not None and limit.upper is not None and limit.lower > limit.upper:

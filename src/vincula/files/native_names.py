@@ -141,7 +141,12 @@ def with_reference(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
             sketch.unknown(location, "joint", name, mechanism.joint)
             continue
         point = None
-        if cut.at is not None:
+        if cut.kind == "contact" and cut.at is not None and mechanism.type_of(mechanism.joint[name]).axes:
+            sketch.problem(
+                [*location, "at"],
+                "a joint cut as a contact is cut at its centre: leave `at` out, or say kind: kept",
+            )
+        elif cut.at is not None:
             point = sketch.attempt(
                 [*location, "at"], partial(sketch.drawing.point, position(cut.at, scale), "cut point")
             )

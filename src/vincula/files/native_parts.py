@@ -32,21 +32,18 @@ def direction(given: Coordinates, scale: Scale) -> Place:
     return scale.direction(given)
 
 
-def drawn_joint(entry: Any, scale: Scale, planar: bool) -> DrawnJoint:
+def drawn_joint(entry: Any, scale: Scale) -> DrawnJoint:
     """The drawn joint of a joint entry of any type.
 
     Args:
         entry: One of the joint entries of the schema.
         scale: Units of the file.
-        planar: Whether the mechanism is planar: a revolute joint then has no axis to give.
     """
     axis = second_axis = None
     if isinstance(entry, schema.UniversalEntry):
         axis, second_axis = (direction(given, scale) for given in entry.axes)
     elif getattr(entry, "axis", None) is not None:
         axis = direction(entry.axis, scale)
-    elif entry.type == "revolute" and not planar:
-        axis = (0.0, 0.0, 1.0)
     return DrawnJoint(
         entry.name,
         entry.type,
