@@ -73,9 +73,12 @@ def settled(basis: Matrix) -> Matrix:
 
     Settles the freedom of turning inside a subspace: the same for every machine and every algorithm.
     """
-    count = basis.shape[1]
+    size, count = basis.shape
     if count < 2:
         return basis
+    if count == size:
+        # The whole space: elimination would find the identity, in time that grows with size cubed.
+        return np.eye(size)
     turn = np.linalg.qr(basis[leading_rows(basis, count)].T)[0]
     return np.asarray(basis @ turn)
 
