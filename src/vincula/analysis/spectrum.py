@@ -33,8 +33,6 @@ class Spectrum:
         motor: Motor directions of the finite ones, paired with `task` (signs included).
         infinite: Task directions that cost nothing, mutually orthogonal in the metric.
         zero: Motor directions that move nothing.
-        unreached: Task directions orthogonal to all the others: the relation never goes there.
-        unused: Motor directions that take part in nothing.
         undefined: Number of pairs that neither metric weighs.
     """
 
@@ -43,8 +41,6 @@ class Spectrum:
     motor: Matrix
     infinite: Matrix
     zero: Matrix
-    unreached: Matrix
-    unused: Matrix
     undefined: int
 
 
@@ -71,7 +67,6 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
         s, idle, motor_basis = deflated(s, z)
         angles = angles_of_pair(t, s)
         task_side, motor_side = task_basis @ angles.task, motor_basis @ angles.motor
-    unreached, unused = settled(_rest(free, task_side)), settled(_rest(idle, motor_side))
     task_side, motor_side = _physical(task, task_side), _physical(motor, motor_side)
     signs = _signs(task_side)
     return Spectrum(
@@ -80,8 +75,6 @@ def spectrum(relation: Relation, task: Metric, motor: Metric) -> Spectrum:
         motor=motor_side * signs + 0.0,
         infinite=_oriented(_physical(task, settled(free))),
         zero=_oriented(_physical(motor, settled(idle))),
-        unreached=_oriented(_physical(task, unreached)),
-        unused=_oriented(_physical(motor, unused)),
         undefined=parts.undefined,
     )
 
@@ -104,10 +97,8 @@ def dual_spectrum(motions: Spectrum, twist: Metric, rate: Metric) -> Spectrum:
         ratios=1.0 / motions.ratios[::-1],
         task=wrenches * signs + 0.0,
         motor=-torques * signs + 0.0,
-        infinite=_oriented(twist.matrix @ motions.unreached),
-        zero=_oriented(rate.matrix @ motions.unused),
-        unreached=_oriented(twist.matrix @ motions.infinite),
-        unused=_oriented(rate.matrix @ motions.zero),
+        infinite=_oriented(twist.factor.T @ _rest(twist.factor, motions.infinite, motions.task)),
+        zero=_oriented(rate.factor.T @ _rest(rate.factor, motions.zero, motions.motor)),
         undefined=0,
     )
 
@@ -122,11 +113,12 @@ def _physical(metric: Metric, block: Matrix) -> Matrix:
     return block if metric.unit else metric.inverse @ block
 
 
-def _rest(*used: Matrix) -> Matrix:
-    """Orthonormal basis of what orthonormal columns leave over."""
-    size = used[0].shape[0]
-    count = sum(columns.shape[1] for columns in used)
-    return used[0][:, :0] if size == count else svd(np.hstack(used))[0][:, count:]
+def _rest(factor: Matrix, *used: Matrix) -> Matrix:
+    """Orthonormal basis, in the metric, of what directions orthonormal in the metric leave over."""
+    size, count = factor.shape[0], sum(columns.shape[1] for columns in used)
+    if size == count:
+        return factor[:, :0]
+    return settled(svd(factor @ np.hstack(used))[0][:, count:])
 
 
 def _signs(columns: Matrix) -> Vector:

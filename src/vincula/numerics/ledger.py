@@ -50,6 +50,7 @@ class RankLedger:
     tolerance: float = 0.0
     curvature: float = 1.0
     _decisions: dict[str, RankDecision] = field(default_factory=dict, repr=False)
+    _ranks: dict[str, int] = field(default_factory=dict, repr=False)
     _bounds: dict[str, float] = field(default_factory=dict, repr=False)
     _bases: dict[str, tuple[Matrix, ...]] = field(default_factory=dict, repr=False)
 
@@ -105,11 +106,14 @@ class RankLedger:
         Where full rank is proved without singular values, they are not computed: the decision would
         be the same, and certain.
         """
-        if name not in self._decisions and self._proved_full(name):
-            n_a, n_p, n_o = self._widths
-            width = {"passive": 0, "active+passive": n_a, "passive+member": n_o, "all": n_a + n_o}[name]
-            return min(self._rows, n_p + width)
-        return self.decision(name).rank
+        if name not in self._ranks:
+            if name not in self._decisions and self._proved_full(name):
+                n_a, n_p, n_o = self._widths
+                width = {"passive": 0, "active+passive": n_a, "passive+member": n_o, "all": n_a + n_o}[name]
+                self._ranks[name] = min(self._rows, n_p + width)
+            else:
+                self._ranks[name] = self.decision(name).rank
+        return self._ranks[name]
 
     @cached_property
     def scale(self) -> float:
