@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         NonFiniteError,
         RankAmbiguityWarning,
         ShapeError,
+        SweepError,
         TopologyError,
         UnknownNameError,
         UnsupportedFeatureError,
@@ -46,6 +47,9 @@ if TYPE_CHECKING:
         WeightError,
     )
     from vincula.files.load import load
+    from vincula.kernels.compiled import CompiledMechanism
+    from vincula.kernels.compiled import compile_mechanism as compile  # noqa: A004
+    from vincula.kernels.evaluation import Evaluation
     from vincula.mechanism.branches import Branch
     from vincula.mechanism.closed import ClosedConfiguration
     from vincula.mechanism.configuration import Configuration
@@ -78,6 +82,7 @@ __all__ = [
     "Branch",
     "ClosedConfiguration",
     "ClosureError",
+    "CompiledMechanism",
     "Configuration",
     "Contact",
     "Coupling",
@@ -86,6 +91,7 @@ __all__ = [
     "Drive",
     "DuplicateNameError",
     "Ellipsoid",
+    "Evaluation",
     "FileError",
     "Fixed",
     "Free",
@@ -111,6 +117,7 @@ __all__ = [
     "ShapeError",
     "Singularity",
     "Spherical",
+    "SweepError",
     "TopologyError",
     "Universal",
     "UnknownNameError",
@@ -121,6 +128,7 @@ __all__ = [
     "active_force_ellipsoid",
     "analyze",
     "characteristic_length_weights",
+    "compile",
     "condition_number",
     "dual_force_ellipsoid",
     "internal_force_ellipsoid",
@@ -162,11 +170,15 @@ _HOME = {
     "NonFiniteError": "vincula.errors:NonFiniteError",
     "RankAmbiguityWarning": "vincula.errors:RankAmbiguityWarning",
     "ShapeError": "vincula.errors:ShapeError",
+    "SweepError": "vincula.errors:SweepError",
     "TopologyError": "vincula.errors:TopologyError",
     "UnknownNameError": "vincula.errors:UnknownNameError",
     "UnsupportedFeatureError": "vincula.errors:UnsupportedFeatureError",
     "VinculaError": "vincula.errors:VinculaError",
     "WeightError": "vincula.errors:WeightError",
+    "CompiledMechanism": "vincula.kernels.compiled:CompiledMechanism",
+    "compile": "vincula.kernels.compiled:compile_mechanism",
+    "Evaluation": "vincula.kernels.evaluation:Evaluation",
     "Branch": "vincula.mechanism.branches:Branch",
     "ClosedConfiguration": "vincula.mechanism.closed:ClosedConfiguration",
     "Configuration": "vincula.mechanism.configuration:Configuration",

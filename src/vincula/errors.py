@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
+from typing import Literal
 
 
 class VinculaError(Exception):
@@ -131,6 +132,22 @@ class FileError(VinculaError):
 
 class UnsupportedFeatureError(FileError):
     """A file says something that vincula understands but cannot represent."""
+
+
+class SweepError(VinculaError):
+    """A sweep cannot be run, resumed, stored or read.
+
+    Attributes:
+        kind: `usage` (asked for the wrong thing), `refused` (another process is at it, another model) or
+            `storage` (no room, a damaged ledger).
+        details: Further data, by name: hashes, bytes needed, chunks.
+    """
+
+    def __init__(
+        self, message: str, *, kind: Literal["usage", "refused", "storage"] = "refused", **details: object
+    ) -> None:
+        self.kind, self.details = kind, details
+        super().__init__(message)
 
 
 class MissingExtraError(VinculaError, ImportError):

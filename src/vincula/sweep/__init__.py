@@ -1,0 +1,1 @@
+"""Sweeps: many points, one labelled data set, a ledger that survives anything."""
