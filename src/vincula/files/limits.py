@@ -37,6 +37,7 @@ class Limits:
         number_characters: Characters in one number.
         name_characters: Characters in one name.
         seconds: Computing time for parsing one file [s].
+        isolated: Whether MuJoCo's parser, which nobody can stop from within, runs in a process of its own.
     """
 
     xml_bytes: int = 8 * _MIB
@@ -54,6 +55,7 @@ class Limits:
     number_characters: int = 400
     name_characters: int = 256
     seconds: float = 5.0
+    isolated: bool = True
 
     @property
     def largest_file(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from vincula.errors import FileError, MissingExtraError, ModelError, UnsupportedFeatureError
@@ -45,19 +46,21 @@ def load_mjcf(
     report = LoadReport(source.file, "MJCF")
     document = read_document(source, limits, roots, report)
     check_document(document, limits)
-    return _mechanism(document, source, report), report
+    return _mechanism(document, source, report, limits), report
 
 
-def _mechanism(document: Document, source: Source, report: LoadReport) -> Mechanism:
-    try:
-        import mujoco  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("MuJoCo", "mujoco", "reading MJCF files") from None
+def _mechanism(document: Document, source: Source, report: LoadReport, limits: Limits) -> Mechanism:
+    if find_spec("mujoco") is None:
+        raise MissingExtraError("MuJoCo", "mujoco", "reading MJCF files")
+    if limits.isolated:
+        from vincula.files.mjcf_child import CHILD
+
+        CHILD.start()  # it starts while MuJoCo is imported here
     from vincula.adapters.mujoco_graph import mechanism_of
     from vincula.adapters.mujoco_names import ModelNames
     from vincula.files.mjcf_compile import compile_document
 
-    model, warnings = compile_document(document)
+    model, warnings = compile_document(document, limits)
     stem = source.path.stem if source.path is not None else "mechanism"
     try:
         mechanism = mechanism_of(

@@ -3,66 +3,59 @@
 from __future__ import annotations
 
 import re
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 import mujoco
 
+from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.mjcf_child import CHILD, StoppedError
 from vincula.files.mjcf_document import Document
+from vincula.files.mjcf_parser import Parsed, parse
 from vincula.files.mjcf_text import Written, write_bare, write_complete
 from vincula.files.mjcf_words import engine_flags, suggestion_for
 from vincula.files.problems import Problems
+from vincula.files.xmltree import refuse_element
 
 _LINE: Final = re.compile(r"line (\d+)")
 _PREFIX: Final = re.compile(r"(?:^|could not parse model file with error: )(?:XML )?Error: (?:Error: )?")
 _QUOTED: Final = re.compile(r"'([^']+)'")
+_MODEL: Final = "model.mjb"
 
 
-def compile_document(document: Document) -> tuple[Any, list[str]]:
+def compile_document(document: Document, limits: Limits = DEFAULT_LIMITS) -> tuple[Any, list[str]]:
     """The compiled model of a document, and MuJoCo's warnings.
 
     Raises:
-        FileError: MuJoCo refuses the document; its first error is told with the place.
+        FileError: MuJoCo refuses the document; its first error is told with the place.  Or it takes too
+            long or dies over it.
     """
     complete, bare = write_complete(document), write_bare(document, engine_flags())
-    with _warnings_caught() as caught:
-        _spec(document, complete)
-        spec = _spec(document, bare)
-        try:
-            model = spec.compile()
-        except (ValueError, RuntimeError, mujoco.FatalError) as error:
-            _refuse(document, bare, error)
-    return model, list(dict.fromkeys(caught))
+    texts = {
+        "complete": complete.text,
+        "complete_files": complete.files,
+        "bare": bare.text,
+        "bare_files": bare.files,
+    }
+    found = _parsed_apart(document, texts, limits) if limits.isolated else parse(**texts)  # type: ignore[arg-type]
+    if found.error:
+        _refuse(document, bare if found.bare else complete, found.error)
+    return found.model, found.warnings
 
 
-def _spec(document: Document, written: Written) -> Any:
-    files = {name: text.encode("utf-8") for name, text in written.files.items()}
+def _parsed_apart(document: Document, texts: dict[str, Any], limits: Limits) -> Parsed:
+    """What MuJoCo makes of the texts in a process of its own."""
     try:
-        return mujoco.MjSpec.from_string(written.text, include=files)
-    except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        _refuse(document, written, error)
+        answer = CHILD.ask(texts, limits.seconds)
+    except StoppedError as stopped:
+        refuse_element(document.root, str(stopped))
+    if answer.error:
+        return Parsed(error=answer.error, bare=answer.bare)
+    model = mujoco.MjModel.from_binary_path(_MODEL, {_MODEL: answer.model})
+    return Parsed(model, answer.warnings)
 
 
-@contextmanager
-def _warnings_caught() -> Iterator[list[str]]:
-    """Collect MuJoCo's warnings, which would be printed and put in a log file in the user's folder."""
-    caught: list[str] = []
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(caught.append)
-    try:
-        with warnings.catch_warnings(record=True) as recorded:
-            warnings.simplefilter("always")
-            yield caught
-        caught.extend(str(warning.message) for warning in recorded)
-    finally:
-        mujoco.set_mju_user_warning(before)
-
-
-def _refuse(document: Document, written: Written, error: Exception) -> Any:
+def _refuse(document: Document, written: Written, text: str) -> NoReturn:
     """Pass MuJoCo's error on, at the element that its line or a name in it leads to."""
-    text = str(error)
     found = _LINE.search(text)
     element = written.elements.get(int(found[1])) if found is not None else None
     if element is None:

@@ -143,5 +143,14 @@ def shown(value: object, most: int = 60) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def form_of(value: object) -> str:
+    """A value of a file for a message; of lists and tables only what they are."""
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if isinstance(value, dict):
+        return f"a table of {len(value)}"
+    return shown(value)
+
+
 def _escape(character: str) -> str:
     return character.encode("unicode_escape").decode("ascii") if character != "'" else "\\'"

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeVar
 from pydantic import BaseModel, Tag, ValidationError
 from pydantic_core import ErrorDetails
 
-from vincula.files.problems import shown
+from vincula.files.problems import form_of, shown
 from vincula.files.schema_values import Context, PlacedVector
 from vincula.files.tree import Document, Items, Leaf, Node, Table
 
@@ -81,7 +81,7 @@ def _add(document: Document, model: type[BaseModel], detail: ErrorDetails) -> No
         add(place, got=shown(given), expected="a known word" if word else context["expected"], name=word,
             choices=choices if word else ())  # fmt: skip
     else:
-        add(place, got=_form(given), expected=_expected(kind, context, detail["loc"]))
+        add(place, got=form_of(given), expected=_expected(kind, context, detail["loc"]))
 
 
 _EXPECTED: Final = {
@@ -106,15 +106,6 @@ def _expected(kind: str, context: dict[str, Any], location: tuple[str | int, ...
 
 def _entries(count: int) -> str:
     return "one entry" if count == 1 else f"{count} entries"
-
-
-def _form(value: Any) -> str:
-    """A value for a message; of lists and tables only what they are."""
-    if isinstance(value, list):
-        return f"a list of {len(value)}"
-    if isinstance(value, dict):
-        return f"a table of {len(value)}"
-    return shown(value)
 
 
 def _location(document: Document, detail: ErrorDetails) -> tuple[tuple[str | int, ...], bool]:

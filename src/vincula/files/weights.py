@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from vincula.errors import FileError, ModelError, WeightError
+from vincula.errors import FileError, ModelError, UnknownNameError, WeightError
 from vincula.files.expressions import Measured
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.spatial.units import quantity
-from vincula.weights import Weights
+from vincula.weights import QUANTITIES, Weights
 
 if TYPE_CHECKING:
     from vincula.files.schema import WeightsEntry
@@ -46,6 +46,8 @@ def _from_text(text: str) -> Weights:
     found: dict[str, object] = {}
     for part in filter(None, (part.strip() for part in text.split(";"))):
         name, equals, value = (word.strip() for word in part.partition("="))
+        if name not in (*QUANTITIES, "reciprocal"):
+            raise UnknownNameError("weight", name[:80], (*QUANTITIES, "reciprocal"))
         if name in found:
             raise WeightError(f"weight {name!r} is given twice")
         if name == "reciprocal" and (not equals or value in ("true", "false")):

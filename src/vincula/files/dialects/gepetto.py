@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from vincula.files.limits import Limits
-from vincula.files.problems import shown
+from vincula.files.problems import form_of, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint
 from vincula.files.source import Source
@@ -90,7 +90,7 @@ class _SideFileReader:
             return []
         if isinstance(value, list):
             return value
-        self._add((key,), got=shown(value), expected="a list")
+        self._add((key,), got=form_of(value), expected="a list")
         return []
 
     def _add(self, location: Location, message: str = "", **details: Any) -> None:
@@ -100,7 +100,7 @@ class _SideFileReader:
         """The link that a frame name stands for; empty after a problem."""
         if isinstance(name, str) and name in self._frames:
             return self._frames[name]
-        self._add(location, got=f"frame {shown(name)}", name=str(name), choices=self._frames)
+        self._add(location, got=f"frame {form_of(name)}", name=str(name), choices=self._frames)
         return ""
 
     def _loops(self, pairs: list[Any], kinds: list[Any]) -> None:
@@ -108,13 +108,13 @@ class _SideFileReader:
             self._add(("type",), got=f"{len(kinds)} types", expected=f"{len(pairs)}, one a closed_loop")
             return
         for i, (pair, kind) in enumerate(zip(pairs, kinds, strict=True)):
-            if kind not in LOOPS:
+            if not isinstance(kind, str) or kind not in LOOPS:
                 self._add(
-                    ("type", i), got=shown(kind), expected=" or ".join(LOOPS), name=str(kind), choices=LOOPS
+                    ("type", i), got=form_of(kind), expected=" or ".join(LOOPS), name=str(kind), choices=LOOPS
                 )
                 continue
             if not isinstance(pair, list) or len(pair) != 2:
-                self._add(("closed_loop", i), got=shown(pair), expected="two frames")
+                self._add(("closed_loop", i), got=form_of(pair), expected="two frames")
                 continue
             links = [self._frame(name, ("closed_loop", i, k)) for k, name in enumerate(pair)]
             if not all(links):
@@ -140,10 +140,10 @@ class _SideFileReader:
             return
         joints = {joint.name: i for i, joint in enumerate(self._draft.joints)}
         for i, (name, kind) in enumerate(zip(names, types, strict=True)):
-            if kind not in JOINTS:
-                self._add(("joint_type", i), got=shown(kind), expected=" or ".join(JOINTS), choices=JOINTS)
-            elif name not in joints:
-                self._add(("joint_name", i), got=f"joint {shown(name)}", name=str(name), choices=joints)
+            if not isinstance(kind, str) or kind not in JOINTS:
+                self._add(("joint_type", i), got=form_of(kind), expected=" or ".join(JOINTS), choices=JOINTS)
+            elif not isinstance(name, str) or name not in joints:
+                self._add(("joint_name", i), got=f"joint {form_of(name)}", name=str(name), choices=joints)
             else:
                 at = joints[name]
                 old = self._draft.joints[at]
@@ -153,8 +153,10 @@ class _SideFileReader:
     def _motors(self, names: list[Any], given: bool) -> None:
         joints = {j.name for j in self._draft.joints if not j.closure and j.type != "fixed"}
         for i, name in enumerate(names):
-            if name not in joints:
-                self._add(("name_mot", i), got=f"joint {shown(name)}", name=str(name), choices=sorted(joints))
+            if not isinstance(name, str) or name not in joints:
+                self._add(
+                    ("name_mot", i), got=f"joint {form_of(name)}", name=str(name), choices=sorted(joints)
+                )
         if given:
             self._draft.motors = {str(name): str(name) for name in names}
             for name in self._draft.motors:
