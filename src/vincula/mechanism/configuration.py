@@ -43,6 +43,26 @@ class Configuration(Mapping[str, Vector]):
 
     __hash__ = None  # type: ignore[assignment]
 
+    @property
+    def flat(self) -> Vector:
+        """All values one after the other, in the order of the joints [m, rad, quaternions w x y z]."""
+        return np.concatenate([*self._values.values(), np.empty(0)])
+
+    def from_flat(self, flat: Vector) -> Configuration:
+        """A configuration of the same joints from all values one after the other.
+
+        Raises:
+            ShapeError: The wrong number of values.
+            NonFiniteError: NaN or infinity.
+            ModelError: A quaternion of length zero.
+        """
+        values = checked(flat, "configuration", (sum(map(len, self._values.values())),))
+        found, start = {}, 0
+        for joint, old in self._values.items():
+            found[joint] = _normalised(joint, values[start : start + len(old)], len(old))
+            start += len(old)
+        return Configuration(found)
+
     def replaced(self, values: Mapping[str, float | Sequence[float] | Vector]) -> Configuration:
         """The same configuration with some joints at other values.
 

@@ -1,0 +1,1 @@
+"""One mechanism at many configurations: compiled once, evaluated in batches, with or without numba."""

@@ -1,0 +1,210 @@
+"""The front door: what a batch says is what the ordinary functions say, one configuration at a time."""
+
+from __future__ import annotations
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import vincula as vc
+from vincula.kernels.evaluation import FAILED, NO_CLOSURE, OK, OPEN
+from vincula.kernels.quantities import CLASS_CODES, KINDS, NO_CLASS, NO_COUNT
+from vincula.mechanism.catalog import examples
+
+ALL = ("status", "counts", "summary", "mobility",
+       "closure.residual", "reference.pose", "configuration", "bounds",
+       *(f"{kind}.{part}" for kind in KINDS
+         for part in ("efficiencies", "classes", "task_directions", "motor_directions")))  # fmt: skip
+
+
+@pytest.fixture
+def five_bar() -> vc.CompiledMechanism:
+    return vc.compile(vc.load("example:five-bar"))
+
+
+@pytest.mark.parametrize("name", [entry.name for entry in examples()])
+def test_home_is_what_analyze_says(name: str) -> None:
+    mechanism = vc.load(f"example:{name}")
+    model = mechanism.linearize()
+    analysis = vc.analyze(model)
+    found = vc.compile(mechanism).evaluate(None, ALL)
+    assert found.shape == ()
+    assert found.status == OK
+    for word, ellipsoid in zip(KINDS, analysis.ellipsoids, strict=True):
+        count = len(ellipsoid.classes)
+        values, classes = found[f"{word}.efficiencies"], found[f"{word}.classes"]
+        np.testing.assert_array_equal(values[:count], ellipsoid.efficiencies)
+        assert np.isnan(values[count:]).all()
+        assert classes.tolist() == [CLASS_CODES[c] for c in ellipsoid.classes] + [NO_CLASS] * (
+            len(values) - count
+        )
+        for side in ("task_directions", "motor_directions"):
+            array = found[f"{word}.{side}"]
+            for entry, direction in enumerate(getattr(ellipsoid, side)):
+                wanted = np.full(array.shape[1], np.nan) if direction is None else direction
+                np.testing.assert_array_equal(array[entry], wanted)
+            assert np.isnan(array[count:]).all()
+    assert found["counts"].tolist() == list(model.ledger.counts.as_dict().values())
+    assert found["summary"].tolist() == list(model.ledger.summary.as_dict().values())
+    assert found["mobility"] == model.ledger.summary.mobility
+    assert found["closure.residual"] == model.uncertainty.residual
+    np.testing.assert_array_equal(found["configuration"], mechanism.home.flat)
+    assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["counts"] == found["counts"].tolist()
+
+
+def test_leading_dimensions_are_anything(five_bar: vc.CompiledMechanism) -> None:
+    home = five_bar.flat()
+    lanes = np.stack([home] * 6)
+    one = five_bar.evaluate(home)["kinematic.efficiencies"]
+    assert five_bar.evaluate(lanes[:0])["kinematic.efficiencies"].shape == (0, *one.shape)
+    assert five_bar.evaluate(np.empty((3, 0, 5))).shape == (3, 0)
+    for shape in ((6,), (1, 6), (2, 3), (3, 1, 2)):
+        found = five_bar.evaluate(lanes.reshape(*shape, -1))
+        assert found.shape == shape
+        np.testing.assert_array_equal(
+            found["kinematic.efficiencies"], np.broadcast_to(one, (*shape, *one.shape))
+        )
+
+
+def test_indices_are_those_of_the_analysis(five_bar: vc.CompiledMechanism) -> None:
+    model = five_bar.mechanism.linearize()
+    names = (
+        "yoshikawa_volume",
+        "condition_number",
+        "inverse_condition_number",
+        "isotropy",
+        "smallest_singular_value",
+    )
+    found = five_bar.evaluate(
+        None, [f"kinematic.{n}:{part}" for n in names for part in ("translation", "all")]
+    )
+    for name in names:
+        for part in ("translation", "all"):
+            assert found[f"kinematic.{name}:{part}"] == getattr(vc, name)(model, part)
+
+
+def test_motors_are_followed_from_their_neighbours(five_bar: vc.CompiledMechanism) -> None:
+    motors = np.linspace([0.0, 0.0], [-0.5, 0.3], 7)
+    found = five_bar.evaluate(
+        motors, ["configuration", "closure.residual", "closure.iterations"], given="motors"
+    )
+    assert (found.status == OK).all()
+    near = five_bar.mechanism.home
+    for lane, (one, two) in enumerate(motors):
+        near = five_bar.mechanism.close(near, motors={"o1": one, "o5": two}, attempts=1)
+        np.testing.assert_array_equal(found["configuration"][lane], near.flat)
+        assert found["closure.iterations"][lane] == near.iterations
+    assert (found["closure.residual"] < 1e-12).all()
+    backwards = five_bar.evaluate(motors[::-1], ["configuration"], given="motors", start=near)
+    np.testing.assert_allclose(backwards["configuration"][::-1], found["configuration"], atol=1e-12)
+
+
+def test_every_lane_has_its_own_start(five_bar: vc.CompiledMechanism) -> None:
+    motors = np.linspace([0.0, 0.0], [-0.5, 0.3], 4)
+    home = np.stack([five_bar.flat()] * 4)
+    together = five_bar.evaluate(motors, ["configuration"], given="motors", start=home)["configuration"]
+    for lane in range(4):
+        alone = five_bar.evaluate(motors[lane], ["configuration"], given="motors")["configuration"]
+        np.testing.assert_array_equal(together[lane], alone)
+
+
+def test_poses_of_the_member_give_themselves() -> None:
+    compiled = vc.compile(vc.load("example:stewart"))
+    poses = np.linspace([0, 0, 2, 1, 0, 0, 0], [0.1, -0.2, 2.2, 0.99, 0.05, -0.1, 0.08], 3)
+    found = compiled.evaluate(poses, ["reference.pose"], given="reference")
+    assert (found.status == OK).all()
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
+    np.testing.assert_allclose(found["reference.pose"], poses, atol=1e-13)
+
+
+def test_what_cannot_be_evaluated_is_said_lane_by_lane(five_bar: vc.CompiledMechanism) -> None:
+    lanes = np.stack([five_bar.flat()] * 3)
+    lanes[1, 0] = np.nan
+    lanes[2, 0] += 0.1
+    found = five_bar.evaluate(lanes, ["kinematic.efficiencies", "mobility", "closure.residual"])
+    assert found.status.tolist() == [OK, FAILED, OPEN]
+    assert found["mobility"].tolist() == [2, NO_COUNT, NO_COUNT]
+    assert np.isnan(found["kinematic.efficiencies"][1:]).all()
+    assert found["closure.residual"][2] > 0.01
+    assert found.reason(0) == ""
+    assert "finite" in found.reason(1)
+    assert "open by" in found.reason(2)
+    away = five_bar.evaluate([[0.0, 0.0], [1.0, -1.0], [0.0, 0.0]], given="motors")
+    assert away.status.tolist() == [OK, NO_CLOSURE, OK]
+    assert away.reason(1)
+    with pytest.raises(vc.ModelError, match="not in a batch"):
+        found.reason(3)
+
+
+def linkage(crank: float = 2.0, rocker: float = 1.0) -> vc.Mechanism:
+    return vc.Mechanism.planar(
+        joints=[
+            vc.Revolute("o1", "ground", "crank", at=(-1, -crank)),
+            vc.Revolute("o2", "crank", "coupler", at=(-1, 0)),
+            vc.Revolute("o3", "coupler", "link", at=(0, 0)),
+            vc.Revolute("o4", "link", "rocker", at=(1, -1)),
+            vc.Revolute("o5", "rocker", "ground", at=(1, -1 - rocker)),
+        ],
+        reference=vc.Reference("coupler", origin=(-0.5, 0)),
+        active=["o1", "o5"],
+        weights=vc.Weights(),
+    )
+
+
+def test_parameters_a_lane() -> None:
+    compiled = vc.compile(linkage)
+    cranks = np.array([1.0, 2.0, 0.0, np.nan, 3.0])
+    found = compiled.evaluate(parameters={"crank": cranks})
+    for lane in (0, 1, 4):
+        alone = vc.kinematic_ellipsoid(linkage(cranks[lane]).linearize()).efficiencies
+        np.testing.assert_array_equal(found["kinematic.efficiencies"][lane, : len(alone)], alone)
+    assert found.status[3] == FAILED
+    grid = compiled.evaluate(parameters={"crank": cranks[:2, None], "rocker": np.array([1.0, 1.5, 2.0])})
+    assert grid.shape == (2, 3)
+    with pytest.raises(vc.UnknownNameError, match="crank"):
+        compiled.evaluate(parameters={"crnk": cranks})
+    with pytest.raises(vc.ModelError, match="build="):
+        vc.compile(linkage()).evaluate(parameters={"crank": cranks})
+
+
+def test_refusals(five_bar: vc.CompiledMechanism) -> None:
+    with pytest.raises(vc.UnknownNameError, match=r"kinematic\.efficiencies"):
+        five_bar.evaluate(None, ["kinematic.eficiencies"])
+    with pytest.raises(vc.ModelError, match="list of names"):
+        five_bar.evaluate(None, "mobility")
+    with pytest.raises(vc.ShapeError, match="o1, o2"):
+        five_bar.evaluate(np.zeros((3, 4)))
+    with pytest.raises(vc.ShapeError, match="fit together"):
+        five_bar.evaluate(np.zeros((3, 2)), given="motors", start=np.zeros((2, 5)))
+    with pytest.raises(vc.ModelError, match="choose configuration, motors, reference"):
+        five_bar.evaluate(given="torques")  # type: ignore[arg-type]
+    with pytest.raises(vc.ModelError, match="nothing is given"):
+        five_bar.evaluate(given="motors")
+    with pytest.raises(vc.ModelError, match="Mechanism"):
+        vc.compile("five-bar")  # type: ignore[arg-type]
+    with pytest.raises(vc.MissingReferenceError):
+        vc.compile(vc.Mechanism.planar([vc.Revolute("o", "ground", "arm", at=(0, 0))]))
+
+
+def test_units_that_nobody_chose() -> None:
+    mechanism = vc.load("example:five-bar").with_weights(None)
+    compiled = vc.compile(mechanism)
+    with pytest.raises(vc.MixedUnitsError):
+        compiled.evaluate(None, ["kinematic.condition"])
+    with pytest.warns(vc.MixedUnitsWarning):
+        compiled.evaluate(None, ["kinematic.condition:translation"])
+    weighed = vc.compile(mechanism, weights=vc.Weights(twist=[1, 1, 4]))
+    alone = vc.kinematic_ellipsoid(mechanism.linearize(), vc.Weights(twist=[1, 1, 4])).efficiencies
+    np.testing.assert_array_equal(weighed.evaluate()["kinematic.efficiencies"][: len(alone)], alone)
+    with pytest.raises(vc.WeightError):
+        vc.compile(mechanism, weights=vc.Weights(twist=[1, 1]))
+
+
+def test_a_compiled_mechanism_pickles() -> None:
+    compiled = vc.compile(linkage)
+    again = pickle.loads(pickle.dumps(compiled))
+    assert again.coordinates == compiled.coordinates
+    want = compiled.evaluate(parameters={"crank": 1.5})["kinematic.efficiencies"]
+    np.testing.assert_array_equal(again.evaluate(parameters={"crank": 1.5})["kinematic.efficiencies"], want)
