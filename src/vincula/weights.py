@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 WeightSpec = ArrayLike | Mapping[str, float] | Literal["all rows"] | None
 Quantity = Literal["rate", "twist", "torque", "wrench", "contact_force"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+LARGEST = 1e100
+"""Weights above this, or below one over this but not zero, are refused: their products would overflow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,6 +195,10 @@ def _checked_numbers(spec: object, name: str) -> Vector:
         raise WeightError(f"{problem}; weights are zero (ignored) or positive numbers") from None
     if dimensions == 2 and array.shape[0] != array.shape[1]:
         raise WeightError(f"weight {name} has shape {array.shape}: a matrix of weights must be square")
+    if dimensions == 2:
+        sizes, least = np.diag(array), 1.0 / LARGEST
+        if np.abs(array).max(initial=0.0) > LARGEST or sizes[sizes > 0.0].min(initial=1.0) < least:
+            raise WeightError(f"weight {name}: components are zero or from {least:g} to {LARGEST:g} in size")
     if dimensions < 2:
         for index, value in enumerate(np.atleast_1d(array)):
             _refuse_bad_number(float(value), f"{name}[{index}]" if dimensions else name)
@@ -203,3 +209,7 @@ def _refuse_bad_number(value: object, place: str) -> None:
     good = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
     if not good or not math.isfinite(float(value)) or float(value) < 0.0:  # type: ignore[arg-type]
         raise WeightError(f"weight {place} is {value}: weights are zero (ignored) or positive, and finite")
+    if value and not 1.0 / LARGEST <= float(value) <= LARGEST:  # type: ignore[arg-type]
+        raise WeightError(
+            f"weight {place} is {value}: weights are zero or from {1.0 / LARGEST:g} to {LARGEST:g}"
+        )

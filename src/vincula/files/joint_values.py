@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from vincula.arrays import Vector
 from vincula.errors import ModelError, UnknownNameError
+from vincula.files.limits import LARGEST_NUMBER
 from vincula.files.units import Units
 from vincula.mechanism.configuration import Configuration
 
@@ -79,6 +80,11 @@ class JointValues:
         Raises:
             ModelError: Values that the joint cannot have.
         """
+        for number in numbers:
+            if not abs(number) <= LARGEST_NUMBER:
+                raise ModelError(
+                    f"{name} is {number:g}, expected a number of at most {LARGEST_NUMBER:g} in size"
+                )
         joint, index = self.joint_of(name)
         before = self.values.get(joint.name, self._mechanism.home[joint.name])
         new = list(before)

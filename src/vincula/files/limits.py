@@ -16,6 +16,9 @@ from vincula.files.problems import Place
 
 _MIB: Final = 1 << 20
 
+LARGEST_NUMBER: Final = 1e30
+"""Numbers above this are refused: their squares would overflow in every formula."""
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:

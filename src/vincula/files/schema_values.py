@@ -25,13 +25,9 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from vincula.files.expressions import ExpressionError, Measured, evaluate, is_expression
-from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.limits import DEFAULT_LIMITS, LARGEST_NUMBER, Limits
 from vincula.files.names import name_problem
 from vincula.files.problems import shown
-
-LARGEST: Final = 1e30
-"""Numbers above this are refused: their squares would overflow in every formula."""
-
 
 _LONGEST_TEXT: Final = 2_000
 
@@ -76,8 +72,8 @@ def read_number(value: Any, info: ValidationInfo) -> Measured:
         )
     else:
         raise refusal(shown(value), number_hint(value))
-    if not abs(result.value) <= LARGEST:
-        raise refusal(shown(value), f"a number of at most {LARGEST:g} in size")
+    if not abs(result.value) <= LARGEST_NUMBER:
+        raise refusal(shown(value), f"a number of at most {LARGEST_NUMBER:g} in size")
     return result
 
 

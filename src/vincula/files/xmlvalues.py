@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
 from vincula.files.digits import half_unit, is_number
+from vincula.files.limits import LARGEST_NUMBER
 from vincula.files.names import name_problem
 from vincula.files.problems import Problems, shown
 from vincula.files.xmltree import Element
 from vincula.mechanism.parts import SMALLEST_DIRECTION
+
+_LIMITS: Final = ("lower", "upper", "velocity", "effort")
+"""Limits may be as large as numbers can be: files write the largest number there is for none."""
 
 
 @dataclass
@@ -89,6 +94,13 @@ class XmlValues:
         if not math.isfinite(value):
             self.problems.add(
                 element.place, got=f"{what}={shown(word)}", expected="a finite number such as 0.25 or 1e-3"
+            )
+            return None
+        if abs(value) > LARGEST_NUMBER and what not in _LIMITS:
+            self.problems.add(
+                element.place,
+                got=f"{what}={shown(word)}",
+                expected=f"a number of at most {LARGEST_NUMBER:g} in size",
             )
             return None
         if unit == "length":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -94,7 +95,7 @@ def _normalised(joint: str, value: Vector, count: int) -> Vector:
     if count not in (4, 7):
         return value
     quaternion = value[-4:]
-    size = float(np.linalg.norm(quaternion))
+    size = math.hypot(*quaternion)  # which does not overflow
     if size < 1e-6:
         raise ModelError(
             f"value of joint {joint!r}: the quaternion (w, x, y, z) {quaternion.tolist()} has length zero"
