@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         VinculaError,
         WeightError,
     )
+    from vincula.files.builder import FileBuilder, builder
     from vincula.files.load import load
     from vincula.kernels.compiled import CompiledMechanism
     from vincula.kernels.compiled import compile_mechanism as compile  # noqa: A004
@@ -92,6 +93,7 @@ __all__ = [
     "DuplicateNameError",
     "Ellipsoid",
     "Evaluation",
+    "FileBuilder",
     "FileError",
     "Fixed",
     "Free",
@@ -127,6 +129,7 @@ __all__ = [
     "Weights",
     "active_force_ellipsoid",
     "analyze",
+    "builder",
     "characteristic_length_weights",
     "compile",
     "condition_number",
@@ -145,6 +148,8 @@ __all__ = [
 ]
 
 _HOME = {
+    "FileBuilder": "vincula.files.builder:FileBuilder",
+    "builder": "vincula.files.builder:builder",
     "load": "vincula.files.load:load",
     "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
     "condition_number": "vincula.analysis.indices:condition_number",

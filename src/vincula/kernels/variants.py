@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from functools import cached_property
+from inspect import Parameter, signature
 from typing import Any, Final
 
 from vincula.errors import ModelError, UnknownNameError, listing
@@ -29,15 +31,15 @@ class Variants:
         self._kept: OrderedDict[tuple[tuple[str, float], ...], Mechanism] = OrderedDict()
         self._structure = _structure(nominal)
 
-    @property
-    def defaults(self) -> dict[str, float]:
+    @cached_property
+    def defaults(self) -> Mapping[str, float]:
         """Default values of the parameters that have a number for a default."""
-        from inspect import signature
+        return {} if self.build is None else defaults_of(self.build)
 
-        if self.build is None:
-            return {}
-        found = {name: p.default for name, p in signature(self.build).parameters.items()}
-        return {name: float(value) for name, value in found.items() if isinstance(value, (int, float))}
+    @cached_property
+    def names(self) -> tuple[str, ...] | None:
+        """Names of the parameters; None when the builder takes any name."""
+        return () if self.build is None else parameters_of(self.build)
 
     def names_checked(self, names: Mapping[str, Any]) -> None:
         """Refuse parameters that nothing can be built from.
@@ -51,12 +53,11 @@ class Variants:
         if self.build is None:
             raise ModelError(
                 f"parameters {listing(names)}: the mechanism does not say how it is built from them; give "
-                "compile(mechanism, build=...), a function of these parameters"
+                "vincula.compile(build), with a function of these parameters or vincula.builder(file)"
             )
-        known = parameters_of(self.build)
         for name in names:
-            if known is not None and name not in known:
-                raise UnknownNameError("parameter", name, known)
+            if self.names is not None and name not in self.names:
+                raise UnknownNameError("parameter", name, self.names)
 
     def at(self, values: Mapping[str, float]) -> Mechanism:
         """The mechanism with these parameter values.
@@ -96,13 +97,27 @@ class Variants:
 
 
 def parameters_of(build: Builder) -> tuple[str, ...] | None:
-    """Names of the parameters of a builder; None when it takes any name."""
-    from inspect import Parameter, signature
+    """Names of the parameters of a builder; None when it takes any name.
 
+    A builder may have an attribute `parameters`, names with default values; else its signature tells.
+    """
+    declared = getattr(build, "parameters", None)
+    if isinstance(declared, Mapping):
+        return tuple(declared)
     found = signature(build).parameters.values()
     if any(p.kind is Parameter.VAR_KEYWORD for p in found):
         return None
     return tuple(p.name for p in found if p.kind is not Parameter.POSITIONAL_ONLY)
+
+
+def defaults_of(build: Builder) -> dict[str, float]:
+    """Default values of the parameters of a builder that have a number for a default."""
+    declared = getattr(build, "parameters", None)
+    if not isinstance(declared, Mapping):
+        declared = {name: p.default for name, p in signature(build).parameters.items()}
+    return {
+        n: float(v) for n, v in declared.items() if isinstance(v, (int, float)) and not isinstance(v, bool)
+    }
 
 
 def _built(build: Builder, values: Mapping[str, float]) -> Mechanism | str:

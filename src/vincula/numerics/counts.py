@@ -5,7 +5,7 @@ Source: theory page, section 3 (three subspaces and three kernels; a representat
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,11 +85,11 @@ class TwelveCounts:
     @property
     def contradictory(self) -> tuple[str, ...]:
         """Names of negative entries: the ranks they come from contradict each other."""
-        return tuple(name for name, value in asdict(self).items() if value < 0)
+        return tuple(name for name, value in self.as_dict().items() if value < 0)
 
     def as_dict(self) -> dict[str, int]:
         """The counts by name."""
-        return asdict(self)
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,4 +134,4 @@ class SummaryCounts:
 
     def as_dict(self) -> dict[str, int]:
         """The counts by name."""
-        return asdict(self)
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}

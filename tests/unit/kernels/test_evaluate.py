@@ -165,7 +165,7 @@ def test_parameters_a_lane() -> None:
     assert grid.shape == (2, 3)
     with pytest.raises(vc.UnknownNameError, match="crank"):
         compiled.evaluate(parameters={"crnk": cranks})
-    with pytest.raises(vc.ModelError, match="build="):
+    with pytest.raises(vc.ModelError, match="builder"):
         vc.compile(linkage()).evaluate(parameters={"crank": cranks})
 
 
