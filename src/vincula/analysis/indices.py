@@ -93,9 +93,20 @@ def _semi_axes(source: Ellipsoid | LinearModel, on: Part, weights: Weights | Non
         raise ModelError(f"on is {on!r}: choose translation, rotation or all")
     if isinstance(source, LinearModel):
         source = ellipsoid_of_kind("kinematic", source, resolved_weights(source, weights))
+    chosen = components_of_part(source, on)
+    return _metric_lengths(source.set.project(chosen), source.task_weight.factor[:, chosen])
+
+
+def components_of_part(ellipsoid: Ellipsoid, on: Part) -> list[int]:
+    """Indices of the task components that a part stands for.
+
+    Raises:
+        MixedUnitsError: `on="all"` over metres and radians with weights that nobody chose.
+        ModelError: No such components.
+    """
     kinds = {"m/s": "translation", "N": "translation", "rad/s": "rotation", "N m": "rotation"}
-    parts = [kinds.get(unit, "all") for unit in source.units]
-    if on == "all" and len(set(parts)) > 1 and not source.weights_chosen:
+    parts = [kinds.get(unit, "all") for unit in ellipsoid.units]
+    if on == "all" and len(set(parts)) > 1 and not ellipsoid.weights_chosen:
         raise MixedUnitsError(
             "an index over translations and rotations depends on how metres compare with radians: "
             "choose on='translation' or on='rotation', or give weights, for example "
@@ -103,8 +114,8 @@ def _semi_axes(source: Ellipsoid | LinearModel, on: Part, weights: Weights | Non
         )
     chosen = [i for i, part in enumerate(parts) if on in ("all", part)]
     if not chosen:
-        raise ModelError(f"the {source.kind} ellipsoid has no {on} components")
-    return _metric_lengths(source.set.project(chosen), source.task_weight.factor[:, chosen])
+        raise ModelError(f"the {ellipsoid.kind} ellipsoid has no {on} components")
+    return chosen
 
 
 def _metric_lengths(shadow: VectorSet, factor: Matrix) -> Vector:

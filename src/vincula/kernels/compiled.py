@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any, Literal, get_args
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,9 @@ from vincula.kernels.variants import Builder, Variants
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
 from vincula.weights import Weights
+
+if TYPE_CHECKING:
+    from vincula.kernels.gradients import Gradient
 
 PathName = Literal["auto", "lanes", "reference"]
 """How a batch is computed: in lanes where that is certain, in lanes or not at all, or one by one."""
@@ -147,6 +150,31 @@ class CompiledMechanism:
         if not isinstance(configuration, Mapping) and np.ndim(configuration) > 1:  # type: ignore[arg-type]
             raise ShapeError("configuration", np.shape(configuration), f"({len(self.coordinates)},)")  # type: ignore[arg-type]
         return self.evaluate(configuration, quantities)
+
+    def gradient(
+        self,
+        configurations: Values,
+        quantity: str,
+        *,
+        wrt: str | Sequence[str] = "motors",
+        parameters: Mapping[str, ArrayLike] | None = None,
+    ) -> Gradient:
+        """Exact derivatives of a smooth index or of efficiencies; see `kernels.gradients.gradient`.
+
+        Args:
+            configurations: (..., numbers) closed joint values in the order of `coordinates`; None: home.
+            quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, or an index of the kinematic one.
+            wrt: `motors` (passive joints follow), `joints`, or names of parameters (motors stand still).
+            parameters: Values of parameters, one a lane.
+
+        Raises:
+            ModelError: A quantity that has no derivatives, or parameters without a builder.
+            UnknownNameError: A quantity or parameter that does not exist.
+            ShapeError: Arrays that do not fit.
+        """
+        from vincula.kernels.gradients import gradient
+
+        return gradient(self, configurations, quantity, wrt=wrt, parameters=parameters)
 
     def _plan(self, quantities: Iterable[str]) -> Plan:
         if isinstance(quantities, str):

@@ -1,0 +1,194 @@
+"""How efficiencies and indices change when the matrices change: exact first derivatives.
+
+An efficiency is a stationary value of a ratio of two quadratic forms on the kernel of
+A = [J_a J_p -G^T], so its derivative needs one motion k and one force y only:
+
+    d lambda = -y^T dA k.
+
+For the kinematic ellipsoid k is the motion itself and y the contact forces that go with it (virtual
+work); for forces the two change places.  The formula is that of a simple value; summed over a cluster
+of equal ones it is still right (the sum is smooth), for one member of a cluster there is no derivative.
+Everything is in the scaled coordinates of `LinearModel.scaled`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from vincula.analysis.ellipsoid import Ellipsoid
+from vincula.analysis.recipes import motor_quantity, task_quantity
+from vincula.arrays import Matrix, Vector
+from vincula.model import LinearModel
+from vincula.numerics.lapack import svd
+
+CLUSTER = 1e-7
+"""Efficiencies whose angles differ by less than this, relative, count as equal: the derivative of one
+alone would carry rounding errors divided by the difference."""
+CONSTANT_RANK = 1e-7
+"""How far dA may lead out of the range of A, relative to dA, where the rank is constant along it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sensitivity:
+    """The derivative of one number with respect to the matrix A, as a sum of dyads: -y^T dA k.
+
+    Attributes:
+        forces: m x j, the vectors y.
+        motions: columns x j, the vectors k, ordered (q_a, q_p, u).
+    """
+
+    forces: Matrix
+    motions: Matrix
+
+    def along(self, rate: Matrix) -> float:
+        """The derivative for a rate of change of A = [J_a J_p -G^T], in scaled coordinates."""
+        return float(-np.einsum("ij,ik,kj->", self.forces, rate, self.motions))
+
+    def times(self, factor: float) -> Sensitivity:
+        """The same with a factor."""
+        return Sensitivity(self.forces * factor, self.motions)
+
+    def __add__(self, other: Sensitivity) -> Sensitivity:
+        return Sensitivity(np.hstack([self.forces, other.forces]), np.hstack([self.motions, other.motions]))
+
+
+class Sensitivities:
+    """Derivatives of a model's efficiencies with respect to its matrices.
+
+    Args:
+        model: The model; its ranks decide what is a kernel.
+    """
+
+    def __init__(self, model: LinearModel) -> None:
+        self.model = model
+        self._ledger = model.ledger
+        self._widths = len(model.motors), len(model.passives)
+
+    def scaled_rate(self, active: Matrix, passive: Matrix, member: Matrix) -> Matrix:
+        """dA in scaled coordinates from rates of J_a, J_p and G^T in m, rad, s."""
+        s = self.model.scaled
+        parts = [active * s.active_column, passive * s.passive_column, -member * s.twist]
+        return s.row[:, None] * np.hstack(parts)
+
+    @cached_property
+    def kernel(self) -> Matrix:
+        """Orthonormal basis of all motions (q_a, q_p, u), scaled."""
+        return self._decomposed[2][:, self._ledger.rank("all") :]
+
+    def keeps_rank(self, rate: Matrix) -> bool:
+        """Whether the rank of A stays what it is along a rate of change that keeps the loops closed."""
+        rank = self._ledger.rank("all")
+        rest = self._decomposed[0][:, rank:].T @ rate @ self.kernel
+        size = float(np.linalg.norm(rate))
+        return rest.size == 0 or float(np.linalg.norm(rest)) <= CONSTANT_RANK * size
+
+    def efficiency(self, ellipsoid: Ellipsoid, index: int) -> Sensitivity:
+        """The derivative of one finite efficiency of an ellipsoid of this model.
+
+        Args:
+            ellipsoid: One of the five.
+            index: Position in its list; the class there must be finite.
+        """
+        value = float(ellipsoid.efficiencies[index])
+        task = np.asarray(ellipsoid.task_directions[index], dtype=float)
+        motor = np.asarray(ellipsoid.motor_directions[index], dtype=float)
+        root = math.sqrt(value)
+        weigh_task = ellipsoid.task_weight.matrix
+        weigh_motor = ellipsoid.motor_weight.matrix
+        t, m = self._factors(ellipsoid)
+        return self._of_pair(
+            ellipsoid.kind,
+            root * task / t,
+            motor / m,
+            2.0 * root * t * (weigh_task @ task),
+            -2.0 * value * m * (weigh_motor @ motor),
+        )
+
+    def of_motion(self, rates: Vector, twist: Vector, on_twist: Vector, on_rates: Vector) -> Sensitivity:
+        """Derivative of a stationary function of one motion (q_a, u).
+
+        Args:
+            rates: Motor rates, scaled.
+            twist: Twist, scaled.
+            on_twist: Derivative of the function by the twist.
+            on_rates: Derivative of the function by the rates.
+        """
+        return self._of_pair("kinematic", twist, rates, on_twist, on_rates)
+
+    def _of_pair(
+        self, kind: str, task: Vector, motor: Vector, on_task: Vector, on_motor: Vector
+    ) -> Sensitivity:
+        if kind == "internal force":
+            return self._of_internal(task, on_task, on_motor)
+        pair, on_pair = np.concatenate([motor, task]), np.concatenate([on_motor, on_task])
+        if kind == "kinematic":
+            motion, force = self._lifted(pair), self._pulled(on_pair)
+        else:
+            # An equilibrium e is orthogonal to every motion: de = -N^+T dN^T e.
+            motion, force = self._lifted(on_pair), -self._pulled(pair)
+        return Sensitivity(force[:, None], motion[:, None])
+
+    def _of_internal(self, force: Vector, on_force: Vector, on_torque: Vector) -> Sensitivity:
+        """f in the left kernel of B = [J_p -G^T], tau = -J_a^T f: eqs. (22)-(23)."""
+        held = self._ledger.matrix("passive+member")
+        rank = self._ledger.rank("passive+member")
+        pull = on_force - self.model.scaled.active @ on_torque
+        rest = _pseudo_inverse(held, rank) @ pull
+        return Sensitivity(force[:, None], np.concatenate([on_torque, rest])[:, None])
+
+    @cached_property
+    def _decomposed(self) -> tuple[Matrix, Vector, Matrix]:
+        return svd(self._ledger.matrix("all"))
+
+    @cached_property
+    def _inverse(self) -> Matrix:
+        left, values, right = self._decomposed
+        rank = self._ledger.rank("all")
+        return np.asarray((right[:, :rank] / values[:rank]) @ left[:, :rank].T)
+
+    @cached_property
+    def _relation(self) -> tuple[Matrix, Matrix]:
+        """N = (q_a; u) blocks of the kernel, and its pseudo-inverse."""
+        n_a, n_p = self._widths
+        block = np.delete(self.kernel, slice(n_a, n_a + n_p), axis=0)
+        size = block.shape[1] - max(0, self._ledger.summary.passive_redundancy)
+        return block, _pseudo_inverse(block, size)
+
+    def _lifted(self, pair: Vector) -> Vector:
+        """The whole motion (q_a, q_p, u) of a pair (q_a, u)."""
+        return np.asarray(self.kernel @ (self._relation[1] @ pair))
+
+    def _pulled(self, pair: Vector) -> Vector:
+        """A^+T (q_a, 0, u)."""
+        n_a, n_p = self._widths
+        return np.asarray(self._inverse.T @ np.concatenate([pair[:n_a], np.zeros(n_p), pair[n_a:]]))
+
+    def _factors(self, ellipsoid: Ellipsoid) -> tuple[Vector, Vector]:
+        """Factors from scaled to physical, of the task and of the motor side."""
+        s = self.model.scaled
+        of = {
+            "twist": s.twist,
+            "rate": s.active_column,
+            "wrench": 1.0 / s.twist,
+            "torque": 1.0 / s.active_column,
+            "contact_force": s.row,
+        }
+        return of[task_quantity(ellipsoid.kind)], of[motor_quantity(ellipsoid.kind)]
+
+
+def alone(ellipsoid: Ellipsoid, index: int) -> bool:
+    """Whether a finite efficiency is apart from all the others: only then it has a derivative."""
+    finite = [k for k, c in enumerate(ellipsoid.classes) if c == "finite"]
+    angle = np.arctan(np.sqrt(np.array([float(ellipsoid.efficiencies[k]) for k in finite])))
+    own = angle[finite.index(index)]
+    near = np.abs(angle - own) <= CLUSTER * min(own, np.pi / 2 - own)
+    return int(np.count_nonzero(near)) == 1
+
+
+def _pseudo_inverse(matrix: Matrix, rank: int) -> Matrix:
+    left, values, right = svd(matrix)
+    return np.asarray((right[:, :rank] / values[:rank]) @ left[:, :rank].T)
