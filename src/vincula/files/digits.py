@@ -39,3 +39,18 @@ def half_unit(text: str, *, length: bool = True) -> float:
         return 0.0
     power = int(match[4] or 0) - len(after)
     return 0.5 * 10.0**power if -300 < power < 300 else 0.0
+
+
+def last_unit(text: str) -> float:
+    """One unit of the last digit of a typed number, however few digits it has; 0 for other texts."""
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        return 0.0
+    power = int(match[4] or 0) - len(match[2] or match[3] or "")
+    return float(f"1e{power}") if -300 < power < 300 else 0.0
+
+
+def significant_digits(text: str) -> int:
+    """Digits of a typed number from its first one that is not zero; 0 for other texts."""
+    match = _NUMBER.fullmatch(text)
+    return 0 if match is None else len(((match[1] or "") + (match[2] or match[3] or "")).lstrip("0"))

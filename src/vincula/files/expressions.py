@@ -20,6 +20,7 @@ from typing import Final, NoReturn
 
 from vincula.errors import ModelError, listing
 from vincula.files.digits import half_unit
+from vincula.files.meant import angle_doubt
 from vincula.files.problems import shown, suggestion
 from vincula.files.tree import number
 
@@ -190,6 +191,7 @@ class _Reader:
             return Measured(root, off / (2.0 * root) if root > 0.0 else math.sqrt(off))
         if not math.isfinite(x):
             raise ExpressionError(self._text, "its value is too large", start)
+        off = max(off, angle_doubt(repr(x)))
         if word == "sin":
             return Measured(math.sin(x), abs(math.cos(x)) * off)
         if word == "cos":

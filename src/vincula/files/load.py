@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from vincula.files.native import Loaded
     from vincula.files.parameters import Settings
     from vincula.files.report import LoadReport
+    from vincula.files.snapping import Snapping
     from vincula.mechanism.mechanism import Mechanism
 
 EXAMPLE: Final = "example:"
@@ -32,6 +34,7 @@ def load(
     *,
     beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
+    snap: bool = False,
 ) -> Mechanism:
     """The mechanism of a file or an example.
 
@@ -41,6 +44,8 @@ def load(
             and rad), or texts with a unit such as `"1deg"`.
         beside: Side files of a URDF file (Gepetto loops, SRDF); by default those found beside it.
         limits: How much a file may hold.
+        snap: Read numbers of the file as what they probably mean (1.57 as pi/2); the notes of the
+            mechanism list every number that was read so.
 
     Raises:
         FileError: The file cannot be read; every independent problem with file, line and column.
@@ -48,7 +53,7 @@ def load(
         ModelError: A parameter that is no number.
         MissingExtraError: MJCF without MuJoCo.
     """
-    return load_with_report(path, parameters, beside=beside, limits=limits)[0]
+    return load_with_report(path, parameters, beside=beside, limits=limits, snap=snap)[0]
 
 
 def load_with_report(
@@ -57,6 +62,7 @@ def load_with_report(
     *,
     beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
+    snap: bool = False,
 ) -> tuple[Mechanism, LoadReport]:
     """As `load`, with the report of everything used, ignored and repaired."""
     file, settings = os.fspath(path), dict(parameters or {})
@@ -64,18 +70,27 @@ def load_with_report(
         if beside:
             raise FileError(_NO_SIDE_FILES.format(shown(file)))
         return _example(file, settings)
-    loader = _Loader(settings, limits, beside)
+    from vincula.files.snapping import Snapping, snapped_words
+
+    snapping = Snapping() if snap else None
+    loader = _Loader(settings, limits, beside, snapping)
     loaded = loader.load(file)
     if beside and not loader.beside_was_read:
         raise FileError(_NO_SIDE_FILES.format(loaded.report.file))
     for name in settings:
         if name not in loaded.parameters:
             raise UnknownNameError("parameter", name, loaded.parameters)
+    if snapping is not None and snapping.found:
+        note = f"numbers of the file were read as what they probably mean: {snapped_words(snapping.found)}"
+        loaded.report.snapped += [str(snap) for snap in snapping.found]
+        loaded.report.note(note)
+        return replace(loaded.mechanism, notes=(*loaded.mechanism.notes, note)), loaded.report
     return loaded.mechanism, loaded.report
 
 
 def _example(file: str, settings: Mapping[str, float | str]) -> tuple[Mechanism, LoadReport]:
     from vincula.files.report import LoadReport
+    from vincula.files.snapping import Snapping
     from vincula.mechanism.catalog.registry import example
 
     mechanism = example(file[len(EXAMPLE) :].strip(), **settings)
@@ -98,9 +113,14 @@ class _Loader:
     """Loads a file and the files below it."""
 
     def __init__(
-        self, settings: Settings, limits: Limits, beside: Sequence[str | os.PathLike[str]] = ()
+        self,
+        settings: Settings,
+        limits: Limits,
+        beside: Sequence[str | os.PathLike[str]] = (),
+        snapping: Snapping | None = None,
     ) -> None:
         self._settings, self._limits, self._beside = settings, limits, beside
+        self._snapping = snapping
         self.beside_was_read = False
         self._above: list[Path] = []
 
@@ -131,6 +151,7 @@ class _Loader:
             lambda base: self._base(base, folder),
             self._settings,
             self._limits,
+            self._snapping,
         )
 
     def _base(self, base: str, folder: Path) -> Loaded:
@@ -154,16 +175,16 @@ class _Loader:
         if root in ("mujoco", "mujocoinclude"):
             from vincula.files.mjcf import load_mjcf
 
-            return Loaded(*load_mjcf(source, self._limits))
+            return Loaded(*load_mjcf(source, self._limits, snapping=self._snapping))
         if root == "robot":
             from vincula.files.urdf import load_urdf
 
             self.beside_was_read = True
-            return Loaded(*load_urdf(source, self._limits, beside=self._beside))
+            return Loaded(*load_urdf(source, self._limits, beside=self._beside, snapping=self._snapping))
         if root == "sdf":
             from vincula.files.sdf import load_sdf
 
-            return Loaded(*load_sdf(source, self._limits))
+            return Loaded(*load_sdf(source, self._limits, snapping=self._snapping))
         if not root:
             parse_xml(source, self._limits)  # refuses document types, broken XML and files without elements
         raise FileError(f"{source.file}: {_other_xml(root)}; files that can be read: {listing(FORMATS)}")

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from vincula.errors import FileError, MissingExtraError, ModelError, UnsupportedFeatureError
 from vincula.files.limits import DEFAULT_LIMITS, Limits
-from vincula.files.mjcf_checks import check_document
+from vincula.files.mjcf_checks import angle_unit, check_document
 from vincula.files.mjcf_digits import typed_precision
 from vincula.files.mjcf_document import Document, read_document
 from vincula.files.mjcf_report import record_elements
 from vincula.files.report import LoadReport
+from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
 from vincula.mechanism.mechanism import Mechanism
 
@@ -23,6 +24,7 @@ def load_mjcf(
     limits: Limits = DEFAULT_LIMITS,
     *,
     roots: Sequence[str | Path] = (),
+    snapping: Snapping | None = None,
 ) -> tuple[Mechanism, LoadReport]:
     """The mechanism of an MJCF file, at its home configuration `qpos0`.
 
@@ -33,6 +35,7 @@ def load_mjcf(
         path: The file, or its text where it is open already.
         limits: How much the file may hold.
         roots: Further folders that included files may lie in; by default only the file's own.
+        snapping: Replaces numbers of the file and what it includes by what they mean.
 
     Returns:
         The mechanism, and the report of everything used and ignored.
@@ -46,6 +49,9 @@ def load_mjcf(
     report = LoadReport(source.file, "MJCF")
     document = read_document(source, limits, roots, report)
     check_document(document, limits)
+    if snapping is not None:
+        for part in document.all_documents():
+            snapping.mjcf(part.root, angle_unit(part))
     return _mechanism(document, source, report, limits), report
 
 

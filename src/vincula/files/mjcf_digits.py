@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from vincula.files.digits import half_unit
+from vincula.files.meant import angle_doubt, direction_doubt
 from vincula.files.mjcf_checks import PLACED, PLACING, angle_unit, numbers_of
 from vincula.files.mjcf_document import Document
 from vincula.files.xmltree import Element
@@ -57,13 +58,13 @@ def _errors(attribute: str, words: list[str], unit: float) -> tuple[float, float
     if attribute in ("pos", "anchor"):
         return max(map(half_unit, words)), 0.0
     if attribute == "relpose":
-        return max(map(half_unit, words[:3])), 2 * _direction_error(words[3:])
+        return max(map(half_unit, words[:3])), 2 * _direction_error(words[3:], quaternion=True)
     if attribute == "quat":
-        return 0.0, 2 * _direction_error(words)
+        return 0.0, 2 * _direction_error(words, quaternion=True)
     if attribute == "euler":
-        return 0.0, unit * max(map(_angular, words))
+        return 0.0, max(_angular(word, unit) for word in words)
     if attribute == "axisangle":
-        return 0.0, max(_direction_error(words[:3]), unit * _angular(words[3]))
+        return 0.0, max(_direction_error(words[:3]), _angular(words[3], unit))
     if attribute == "xyaxes":
         return 0.0, max(_direction_error(words[:3]), _direction_error(words[3:]))
     if attribute in ("axis", "zaxis"):
@@ -71,10 +72,14 @@ def _errors(attribute: str, words: list[str], unit: float) -> tuple[float, float
     return 0.0, 0.0
 
 
-def _direction_error(words: list[str]) -> float:
+def _direction_error(words: list[str], *, quaternion: bool = False) -> float:
     size = math.hypot(*map(float, words))
-    return max(map(_angular, words)) / size if size > 0 else 0.0
+    if not size > 0:
+        return 0.0
+    rounded = max(half_unit(word, length=False) for word in words) / size
+    return max(rounded, direction_doubt(words, quaternion=quaternion))
 
 
-def _angular(word: str) -> float:
-    return half_unit(word, length=False)
+def _angular(word: str, unit: float) -> float:
+    doubt = angle_doubt(word, degrees=unit != 1.0)
+    return unit * max(half_unit(word, length=False), doubt)

@@ -24,6 +24,8 @@ from vincula.files.schema import NativeFile
 from vincula.files.schema_problems import validated
 from vincula.files.schema_values import Context
 from vincula.files.sketch import Sketch
+from vincula.files.snapping import Snapping
+from vincula.files.snapping_native import snapped_tree
 from vincula.files.tree import Document, Leaf, Location, Table
 from vincula.files.units import Scale, Units
 from vincula.mechanism.mechanism import Mechanism
@@ -57,6 +59,7 @@ def read_native(
     load_base: LoadBase,
     settings: Settings | None = None,
     limits: Limits = DEFAULT_LIMITS,
+    snapping: Snapping | None = None,
 ) -> Loaded:
     """The mechanism of a native file.
 
@@ -66,12 +69,15 @@ def read_native(
         load_base: Loads the base, if there is one.
         settings: New values of parameters; names that the file does not declare are left to others.
         limits: Limits of the file.
+        snapping: Replaces numbers of the file by what they mean.
 
     Raises:
         FileError: All independent problems at once, each with file, line, column, path and value.
         ModelError: A setting that is no number.
     """
     _refuse_other_files(document)
+    if snapping is not None:
+        document = snapped_tree(document, snapping)
     base = _base(document, load_base)
     units = _units(document)
     parameters = parameter_values(document, settings or {}, units)

@@ -41,6 +41,7 @@ class LoadReport:
         entries: One entry an element, in the order of reading.
         notes: Facts about the whole that the user should know.
         units: Units of the numbers in the file, and so of configurations for it.
+        snapped: Numbers that were read as others because that was asked for, each with its place.
     """
 
     file: str
@@ -48,6 +49,7 @@ class LoadReport:
     entries: list[Entry] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     units: Units = SI
+    snapped: list[str] = field(default_factory=list)
 
     def used(self, kind: str, name: str = "", detail: str = "", count: int = 1) -> None:
         """Record an element that is part of the mechanism now."""
@@ -70,6 +72,7 @@ class LoadReport:
         """Put the report of a base file before this one's entries."""
         self.entries[:0] = base.entries
         self.notes[:0] = [note for note in base.notes if note not in self.notes]
+        self.snapped[:0] = base.snapped
 
     def counts(self) -> dict[str, dict[str, int]]:
         """For every kind, how many elements there are in all and how many of each fate."""
@@ -100,6 +103,7 @@ class LoadReport:
                 for e in self.entries
             ],
             "notes": list(self.notes),
+            "snapped": list(self.snapped),
         }
 
     def __str__(self) -> str:

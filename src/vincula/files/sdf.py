@@ -16,6 +16,7 @@ from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, RobotDraft
 from vincula.files.sdf_frames import MODEL, SdfFrames
 from vincula.files.sdf_joints import SdfJoints, end_of
+from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
 from vincula.files.xmltree import Element, parse_xml
 from vincula.files.xmlvalues import TypedDigits, XmlValues
@@ -38,7 +39,10 @@ _LINK_PARTS: Final = (
 
 
 def load_sdf(
-    path: str | os.PathLike[str] | Source, limits: Limits = DEFAULT_LIMITS
+    path: str | os.PathLike[str] | Source,
+    limits: Limits = DEFAULT_LIMITS,
+    *,
+    snapping: Snapping | None = None,
 ) -> tuple[Mechanism, LoadReport]:
     """The mechanism of an SDF file with one model, at the drawn pose.
 
@@ -48,6 +52,7 @@ def load_sdf(
     Args:
         path: The file, or its text where it is open already.
         limits: How much the file may hold.
+        snapping: Replaces numbers of the file by what they mean.
 
     Returns:
         The mechanism, and the report of everything used and ignored.
@@ -58,7 +63,10 @@ def load_sdf(
     """
     source = path if isinstance(path, Source) else open_source(path, limits)
     reader = _SdfReader(source)
-    reader.read(parse_xml(source, limits, reader.report))
+    root = parse_xml(source, limits, reader.report)
+    if snapping is not None:
+        snapping.sdf(root)
+    reader.read(root)
     return reader.finish(limits), reader.report
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from vincula.files.expressions import Measured
+from vincula.files.meant import direction_doubt
 from vincula.mechanism.parts import Precision
 from vincula.spatial.units import UNITS
 
@@ -78,7 +79,8 @@ class Scale:
         size = math.hypot(*values)
         if size > 0.0:
             off = max(max(number.half_unit, number.angular_half_unit) for number in numbers)
-            self._angle = max(self._angle, off / size)
+            # Typed digits are those that Python prints: the shortest that give the same double.
+            self._angle = max(self._angle, off / size, direction_doubt([repr(value) for value in values]))
         return values
 
     def precision(self, base: Precision, declared: PrecisionEntry | None = None) -> Precision:

@@ -17,6 +17,7 @@ from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.problems import Place, Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint, RobotDraft
+from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
 from vincula.files.urdf_motors import read_transmission
 from vincula.files.urdf_places import origin
@@ -66,6 +67,7 @@ def load_urdf(
     limits: Limits = DEFAULT_LIMITS,
     *,
     beside: Sequence[str | os.PathLike[str]] = (),
+    snapping: Snapping | None = None,
 ) -> tuple[Mechanism, LoadReport]:
     """The mechanism of a URDF file, at zero joint values.
 
@@ -76,6 +78,7 @@ def load_urdf(
         path: The file, or its text where it is open already.
         limits: How much the files may hold.
         beside: Side files (loops, SRDF); by default those found beside the file.
+        snapping: Replaces numbers of the file (not of side files) by what they mean.
 
     Returns:
         The mechanism, and the report of everything used and ignored.
@@ -86,7 +89,10 @@ def load_urdf(
     """
     source = path if isinstance(path, Source) else open_source(path, limits)
     reader = UrdfReader(source, limits)
-    reader.read(parse_xml(source, limits, reader.report))
+    root = parse_xml(source, limits, reader.report)
+    if snapping is not None:
+        snapping.urdf(root)
+    reader.read(root)
     for loops in side_files(source, beside, limits):
         loops.read(reader.draft, reader.values, reader.report)
     mechanism = reader.finish()

@@ -12,6 +12,7 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 from vincula.files.digits import half_unit, is_number
 from vincula.files.limits import LARGEST_NUMBER
+from vincula.files.meant import angle_doubt, direction_doubt
 from vincula.files.names import name_problem
 from vincula.files.problems import Problems, shown
 from vincula.files.xmltree import Element
@@ -120,6 +121,7 @@ class XmlValues:
                 element.place, got=f"{what}={shown(text)}", expected="a direction: a vector of length one"
             )
             return None
+        self.digits.angle = max(self.digits.angle, direction_doubt(text.split()))
         return vector if abs(size - 1.0) < 1e-15 else vector / size
 
     def angles(self, element: Element, text: str, *, what: str, degrees: bool = False) -> Matrix | None:
@@ -127,6 +129,8 @@ class XmlValues:
         values = self.numbers(element, text, 3, what=what, unit="angle")
         if values is None:
             return None
+        doubt = max(angle_doubt(word, degrees=degrees) for word in text.split())
+        self.digits.angle = max(self.digits.angle, math.radians(doubt) if degrees else doubt)
         if degrees:
             values = np.radians(values)
         if float(np.abs(values).max()) > 2 * math.pi + 1e-3:
