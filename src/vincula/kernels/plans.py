@@ -14,6 +14,7 @@ from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights, task_q
 from vincula.errors import MixedUnitsWarning
 from vincula.kernels.quantities import INDICES, Quantity, chosen
 from vincula.kernels.reference_path import ReferencePath, write_ellipsoid
+from vincula.kernels.samples import general_ranks
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.motor_weights import weights_of_motors
 from vincula.model import LinearModel
@@ -64,7 +65,8 @@ def plan_for(
     for message in dict.fromkeys(mixed_units_message(model, used, task_quantity(k)) for k in sorted(kinds)):
         if message:
             warnings.warn(message, MixedUnitsWarning, stacklevel=4)
-    return Plan(quantities, ReferencePath(quantities, weights))
+    ranks = general_ranks(mechanism) if any(q.name == "singularity.distance" for q in quantities) else ()
+    return Plan(quantities, ReferencePath(quantities, weights, ranks))
 
 
 def refuse_bad_weights(mechanism: Mechanism, weights: Weights | None) -> None:

@@ -18,6 +18,7 @@ from vincula.analysis.indices import Part
 from vincula.errors import UnknownNameError, listing
 from vincula.mechanism.mechanism import Mechanism
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
+from vincula.numerics.ledger import MatrixName
 
 KINDS: Final[dict[str, Kind]] = {kind.replace(" ", "_"): kind for kind in get_args(Kind)}
 """Names of the five ellipsoids in quantities."""
@@ -31,6 +32,8 @@ COUNTS: Final = tuple(TwelveCounts.__dataclass_fields__)
 """Names of the twelve counts, in order."""
 SUMMARY: Final = tuple(SummaryCounts.__dataclass_fields__)
 """Names of the summary counts, in order."""
+WATCHED: Final[tuple[MatrixName, ...]] = ("passive", "active+passive", "passive+member", "all")
+"""The matrices whose ranks the summary counts rest on."""
 INDICES: Final = {
     "yoshikawa_volume": "product of the semi-axes",
     "condition": "longest over shortest semi-axis",
@@ -214,6 +217,8 @@ def _of_closure(mechanism: Mechanism) -> list[Quantity]:
                  "reference.pose", dims=("pose",), labels=(pose,), shape=(len(pose),)),
         Quantity("configuration", "joint values [m, rad]", "configuration", dims=("coordinate",),
                  labels=(places,), shape=(len(places),)),
+        Quantity("singularity.distance", "smallest singular value not always zero, over the largest of all",
+                 "singularity.distance", dims=("matrix",), labels=(WATCHED,), shape=(len(WATCHED),)),
         Quantity("bounds", "how far every kinematic efficiency may be off within the uncertainties", "bounds",
                  "kinematic", dims=("kinematic entry",), labels=((),), shape=(entries,)),
     ]  # fmt: skip

@@ -20,6 +20,7 @@ from vincula.arrays import Vector
 from vincula.errors import ClosureError, VinculaError
 from vincula.kernels.evaluation import DOUBTFUL, FAILED, OK, OPEN
 from vincula.kernels.quantities import CLASS_CODES, SUMMARY, Quantity
+from vincula.kernels.samples import distances
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.kinematics import body_poses, reference_position
 from vincula.mechanism.mechanism import Mechanism
@@ -48,10 +49,13 @@ class ReferencePath:
     Args:
         quantities: What is written.
         weights: Weights for all configurations; None for those of the mechanism.
+        ranks: Ranks of the watched matrices in general, for `singularity.distance`.
     """
 
-    def __init__(self, quantities: tuple[Quantity, ...], weights: Weights | None) -> None:
-        self._weights = weights
+    def __init__(
+        self, quantities: tuple[Quantity, ...], weights: Weights | None, ranks: tuple[int, ...] = ()
+    ) -> None:
+        self._weights, self._ranks = weights, ranks
         self._ellipsoids = [q for q in quantities if q.kind is not None]
         self._others = [q for q in quantities if q.kind is None and q.name not in _NOT_OF_THE_MODEL]
         self._configuration = any(q.name == "configuration" for q in quantities)
@@ -89,7 +93,10 @@ class ReferencePath:
             ledger.counts  # noqa: B018  decides the other four ranks
         reason = doubt_of(model)
         for quantity in self._others:
-            arrays[quantity.name][lane] = _OF_MODEL[quantity.part](mechanism, q, model)
+            if quantity.part == "singularity.distance":
+                arrays[quantity.name][lane] = distances(model, self._ranks)
+            else:
+                arrays[quantity.name][lane] = _OF_MODEL[quantity.part](mechanism, q, model)
         if min(summary.as_dict().values()) >= 0:
             self._fill_ellipsoids(model, arrays, lane)
         return Outcome(DOUBTFUL if reason else OK, reason)

@@ -208,3 +208,18 @@ def test_a_compiled_mechanism_pickles() -> None:
     assert again.coordinates == compiled.coordinates
     want = compiled.evaluate(parameters={"crank": 1.5})["kinematic.efficiencies"]
     np.testing.assert_array_equal(again.evaluate(parameters={"crank": 1.5})["kinematic.efficiencies"], want)
+
+
+def test_distance_to_the_nearest_singularity() -> None:
+    """A Stewart platform turned towards the pose in which all its legs would meet one line twice."""
+    compiled = vc.compile(vc.builder("example:stewart"))
+    betas = np.radians([-120.0, -60.0, 0.0, 1.0])
+    found = compiled.evaluate(None, ["singularity.distance", "summary"], parameters={"beta": betas})
+    distance = found["singularity.distance"]
+    assert compiled.quantities["singularity.distance"].labels == (
+        ("passive", "active+passive", "passive+member", "all"),
+    )
+    assert (distance[:3] > 1e-3).all()
+    assert distance[3, 2] < 1e-13  # the member is free, motors locked
+    assert distance[3, 0] > 0.1
+    assert found["summary"][3, 3] == 3
