@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -128,16 +129,30 @@ def _lines(feet: np.ndarray, tops: np.ndarray, centre: np.ndarray) -> float:
 
 
 @pytest.mark.slow
-def test_cassie_like_leg(models: Path) -> None:
-    """A serial leg with two inner loops; each rod keeps its length and its side of the joint it moves."""
-    robot = vc.load(models / "gepetto_cassie_like" / "robot_nomesh.urdf").with_reference("foot_2")
-    rng = np.random.default_rng(1)  # a posture away from the leg's dead centre at motor_knee = -2.3815
-    start = robot.close({name: rng.uniform(-1, 1) for name, value in robot.home.items() if len(value)})
+@pytest.mark.parametrize("way", ["away", "beside", "through"])
+def test_cassie_like_leg(models: Path, way: str) -> None:
+    """A serial leg with two inner loops; each rod keeps its length and its side of the joint it moves.
+
+    From its own start, 0.025 rad from the dead centre of its knee: away from it, up to 0.1 mrad beside it
+    and back, and through it on request.
+    """
+    robot, start = _cassie_like_leg(models)
     curve = _round(np.full(5, 0.2), np.arange(5.0))
-    motors = robot.active
-    waypoints = [{name: start[name][0] + v for name, v in zip(motors, row, strict=True)} for row in curve]
-    path = robot.follow(waypoints, start=start)
+    knee = robot.active.index("motor_knee")
+    to_go = float(start["motor_knee"][0]) - _dead_centre(models)
+    back_and_forth = 0.5 - 0.5 * np.cos(np.linspace(0.0, 2 * np.pi, STEPS + 1))
+    if way != "through":
+        curve[:, knee] = (0.4 if way == "away" else 1e-4 - to_go) * back_and_forth
+    waypoints = [
+        {name: start[name][0] + v for name, v in zip(robot.active, row, strict=True)} for row in curve
+    ]
+    passing = ["motors without authority"] if way == "through" else []
+    path = robot.follow(waypoints, start=start, through=passing)
     assert path.complete, str(path)
+    assert len(path) == STEPS + 1
+    for event in path.passed:
+        assert event.configuration["motor_knee"][0] == pytest.approx(_dead_centre(models), abs=1e-8)
+    assert len(path.passed) == (2 if way == "through" else 0)
     rods = [
         ("servo_gauche_half_planta_rode_rev0", "foot_2_half_planta_rode_2_rev0", "free_ankle"),
         ("tigh_half_hachil_rode_2_rev0", "tarsus_half_hachil_rode_rev0", "free_knee"),
@@ -154,6 +169,33 @@ def test_cassie_like_leg(models: Path) -> None:
         before = q
 
 
+def _cassie_like_leg(models: Path) -> tuple[vc.Mechanism, vc.Configuration]:
+    robot = vc.load(models / "gepetto_cassie_like" / "robot_nomesh.urdf").with_reference("foot_2")
+    return robot, robot.close()
+
+
+def _dead_centre(models: Path) -> float:
+    """Angle of motor_knee at which the free knee stands on the line from the hip to the knee.
+
+    The rod of the free knee begins on the axis of motor_tigh, so that thigh and shin can then turn
+    with the foot at rest.  From the numbers of the file: in the axes of the thigh the hip is the
+    origin, and all three axes are parallel to z.
+    """
+    root = ElementTree.parse(models / "gepetto_cassie_like" / "robot_nomesh.urdf").getroot()
+    place = {}
+    for name in ("motor_knee", "free_knee"):
+        origin = root.find(f"joint[@name='{name}']/origin")
+        assert origin is not None
+        place[name] = [[float(v) for v in origin.attrib[key].split()] for key in ("xyz", "rpy")]
+    (x, y, _), (roll, pitch, yaw) = place["motor_knee"]
+    assert abs(roll - math.pi) + abs(pitch) < 1e-15
+    (u, v, _), _ = place["free_knee"]
+    # the shin's frame is turned over: its y points against the thigh's
+    hip = np.array([x * math.cos(yaw) + y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw)])
+    angle = math.atan2(hip[1], hip[0]) - math.atan2(v, u)
+    return angle - math.pi * round((angle + 2.38) / math.pi)
+
+
 def _rod(robot: vc.Mechanism, q: vc.Configuration, one: str, two: str, hinge: str) -> tuple[float, float]:
     """Length between two ball centres, and the moment arm of that line about a hinge (signed)."""
     poses = robot.body_poses(q)
@@ -165,17 +207,21 @@ def _rod(robot: vc.Mechanism, q: vc.Configuration, one: str, two: str, hinge: st
 
 
 def test_cassie_like_leg_stops_at_its_dead_centre(models: Path) -> None:
-    """The same angle of the knee from different postures: it belongs to the leg, not to the way there."""
-    robot = vc.load(models / "gepetto_cassie_like" / "robot_nomesh.urdf").with_reference("foot_2")
-    knees = []
-    for hip in (0.0, 0.3):
-        start = robot.close(motors={"motor_hip1": hip})
-        path = robot.follow([{"motor_knee": start["motor_knee"][0] - 0.1}], start=start)
+    """From any posture, on any way: to 1e-8 rad where the file puts it, and named by what moves."""
+    robot, home = _cassie_like_leg(models)
+    shares = []
+    for goal in ({"motor_hip1": 0.1}, {"motor_tigh": -0.05, "motor_hip2": 0.08}, {"motor_ankle": 0.1}):
+        to = {name: home[name][0] + step for name, step in goal.items()}
+        path = robot.follow([{**to, "motor_knee": home["motor_knee"][0] - 0.1}], start=home)
         assert path.stopped is not None
-        assert [s.kind for s in path.stopped.singularities] == ["motors without authority"]
-        knees.append(float(path.end["motor_knee"][0]))
-    assert knees[0] == pytest.approx(knees[1], abs=1e-8)
-    assert knees[0] == pytest.approx(-2.3815, abs=1e-4)
+        (found,) = path.stopped.singularities
+        assert found.kind == "motors without authority"
+        assert found.motors == ("motor_tigh", "motor_knee")
+        assert path.end["motor_knee"][0] == pytest.approx(_dead_centre(models), abs=1e-8)
+        shares.append(found.joints)
+    # the rod spins freely at any posture: that has no part in it
+    for other in shares[1:]:
+        assert other == pytest.approx(shares[0], abs=1e-6)
 
 
 def test_stewart_platform_stops_where_its_leg_lines_become_dependent() -> None:

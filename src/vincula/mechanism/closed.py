@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vincula.arrays import Vector
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_problem import ClosureProblem
 from vincula.mechanism.closure_solver import Solution
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import Holding

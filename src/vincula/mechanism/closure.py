@@ -11,8 +11,9 @@ import numpy as np
 from vincula.arrays import Vector
 from vincula.mechanism.closed import ClosedConfiguration, Closing
 from vincula.mechanism.closure_failure import cannot_close, length_conflicts, named_values
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_problem import ClosureProblem
 from vincula.mechanism.closure_solver import Limits, Solution, solve
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import (

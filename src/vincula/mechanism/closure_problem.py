@@ -11,12 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
-from vincula.errors import MissingReferenceError
 from vincula.mechanism.closure_rows import (
     Selection,
     contact_selection,
@@ -24,20 +23,18 @@ from vincula.mechanism.closure_rows import (
     joint_selection,
     whole_pose,
 )
+from vincula.mechanism.closure_unknowns import joints_of_axes, member_joint, scalar_couplings
 from vincula.mechanism.closure_values import Mask, Variables, unwound
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import axis_twists, motion, values_between
 from vincula.mechanism.kinematics import part_frames, reference_position
-from vincula.mechanism.parts import GROUND, ContactPart, Coupling, Drive, Joint
+from vincula.mechanism.parts import GROUND, ContactPart, Joint
 from vincula.mechanism.residuals import axis_linear, axis_values
 from vincula.spatial.poses import Pose
 from vincula.spatial.twists import moment_arm
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
-
-MEMBER: Final = "(pose of the reference member)"
-"""Name of the unknown that stands for the pose of the reference member."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,14 +87,14 @@ class ClosureProblem:
         self.mechanism, self.length = mechanism, mechanism.length
         self.centre = reference_position(mechanism, {b.name: b.pose for b in mechanism.bodies})
         tree = {joint.name for joint, _ in mechanism.tree}
-        self.couplings = _scalar_couplings(mechanism)
+        self.couplings = scalar_couplings(mechanism)
         self.drives = [d for d in mechanism.drives if d.name in set(drives)]
-        wanted = {*kept, *_joints_of_axes(mechanism, self.couplings, self.drives)}
+        wanted = {*kept, *joints_of_axes(mechanism, self.couplings, self.drives)}
         outside = [j for j in mechanism.all_joints if j.name not in tree]
         own = [j for j in outside if j.type != "fixed" and (j.name in wanted or j.type == "screw")]
         self.dependent = [j for j in outside if not j.closure and j not in own]
         if member:
-            own.append(_member_joint(mechanism))
+            own.append(member_joint(mechanism))
         in_tree = [joint for joint, _ in mechanism.tree]
         self.variables = Variables(mechanism, [*in_tree, *own], self.drives)
         self._home = axis_values(mechanism, mechanism.home)
@@ -263,6 +260,35 @@ class ClosureProblem:
             return frames[block.name][1], second
         return poses[block.part.first] @ block.part.frame_on_first, second
 
+    def rates_outside(self, state: Vector) -> dict[str, Matrix]:
+        """Rates of the joints that close loops without being unknowns, for rates of the unknowns.
+
+        Args:
+            state: A closed state.
+
+        Returns:
+            By joint name, axes x columns in scaled units.
+        """
+        poses, frames = self.poses(state)
+        twists = self._twists(frames)
+        s = self.mechanism.space.translations
+        found: dict[str, Matrix] = {}
+        for block in self._blocks:
+            joint = block.part
+            if block.own is not None or not isinstance(joint, Joint) or joint.type == "fixed":
+                continue
+            kind = self.mechanism.type_of(joint)
+            ends = self._ends(block, poses, frames)
+            axes = axis_twists(kind, *ends, joint.lead, joint.second_axis, self.centre)
+            relative = np.zeros((len(axes), self.columns))
+            relative[:, block.columns] = twists[:, block.columns] * block.signs
+            relative *= self.variables.column_scale
+            for matrix in (axes, relative):
+                matrix[:s] /= self.length
+            axes = axes * np.where(kind.linear, self.length, 1.0)
+            found[joint.name] = np.asarray(np.linalg.lstsq(axes, relative, rcond=None)[0])
+        return found
+
     def _twists(self, frames: Mapping[str, tuple[Pose, Pose]]) -> Matrix:
         """d x columns: twist at the centre, in ground axes, of every unknown axis."""
         twists = np.zeros((self.mechanism.space.dimension, self.columns))
@@ -315,33 +341,3 @@ class ClosureProblem:
                 found = self._values_there(joint, poses)
                 values[joint.name] = unwound(self.mechanism.type_of(joint), found, near[joint.name])
         return Configuration(values)
-
-
-def _scalar_couplings(mechanism: Mechanism) -> list[Coupling]:
-    """Couplings between axes that have scalar values; others constrain rates only."""
-    scalar = axis_values(mechanism, mechanism.home)
-    return [c for c in mechanism.couplings if all(axis in scalar for axis in c.axes)]
-
-
-def _joints_of_axes(mechanism: Mechanism, couplings: Iterable[Coupling], drives: Iterable[Drive]) -> set[str]:
-    """Joints with an axis in a coupling or drive."""
-    joint_of = {
-        axis: joint.name
-        for joint in mechanism.all_joints
-        for axis in mechanism.type_of(joint).axis_names(joint.name)
-    }
-    axes = [axis for c in couplings for axis in c.axes] + [axis for d in drives for axis in d.drives]
-    return {joint_of[axis] for axis in axes}
-
-
-def _member_joint(mechanism: Mechanism) -> Joint:
-    """A free joint from the ground to the reference point: its values are the member's pose.
-
-    Raises:
-        MissingReferenceError: No reference member is named.
-    """
-    reference = mechanism.reference
-    if reference is None:
-        raise MissingReferenceError(body.name for body in mechanism.bodies)
-    identity = Pose.identity(mechanism.space.translations)
-    return Joint(MEMBER, "free", GROUND, reference.body, identity, Pose.at(reference.origin))

@@ -10,8 +10,8 @@ import numpy as np
 from vincula.arrays import Vector
 from vincula.errors import ModelError, listing
 from vincula.mechanism.closure import asked_exactly, close
-from vincula.mechanism.closure_problem import MEMBER
 from vincula.mechanism.closure_solver import Limits
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import (

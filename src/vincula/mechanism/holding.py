@@ -10,7 +10,8 @@ import numpy as np
 
 from vincula.arrays import Vector, checked
 from vincula.errors import ModelError, UnknownNameError
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_problem import ClosureProblem
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.joint_types import values_between

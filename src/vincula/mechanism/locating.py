@@ -9,7 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.tracks import Track, TrackPoint
+from vincula.mechanism.watching import decided, measured_block
 
 Measuring = Callable[[TrackPoint], float]
 
@@ -17,6 +22,10 @@ COARSE: Final = 1e-5
 """Accuracy of the first search, as a share of the chord; the second starts from a chord around it."""
 FINE: Final = 1e-10
 AROUND: Final = 1e-3
+BESIDE: Final = 2e-4
+"""Distance at which regular points beside a singular one are looked at [rad, or lengths L]."""
+HIT: Final = 1e-9
+"""A singularity nearer than this to the end of a step is at the end of the step."""
 
 
 def root(track: Track, one: TrackPoint, two: TrackPoint, measure: Measuring) -> tuple[TrackPoint, float]:
@@ -59,3 +68,62 @@ def minimum(track: Track, one: TrackPoint, two: TrackPoint, measure: Measuring) 
         options={"xatol": 1e-9},
     )
     return track.between(one, two, float(found.x))
+
+
+def settled(
+    track: Track,
+    one: TrackPoint,
+    two: TrackPoint,
+    measure: Measuring,
+    is_singular: Callable[[TrackPoint], bool],
+) -> tuple[TrackPoint, float] | None:
+    """Where a measure vanishes that at the end of a step cannot be told from zero.
+
+    Within some 1e-7 of a singularity rounding decides no rank; the zero itself is known far better.
+    A look beyond the end tells whether it lies in the step, at its end, or still ahead.
+
+    Args:
+        track: The track.
+        one: Begin of the step.
+        two: Its end.
+        measure: The signed measure.
+        is_singular: Whether the measure cannot be told from zero at a point.
+
+    Returns:
+        The point and its share of the step; None where the zero is still ahead.
+    """
+    chord = track.step_between(one, two)
+    size = float(np.linalg.norm(chord))
+    unit = chord / size
+    ahead, _ = track.corrected(track.moved(two, BESIDE * unit), normal=unit)
+    if is_singular(ahead) or is_singular(one):
+        return two, 1.0
+    if measure(one) * measure(ahead) < 0.0:
+        point, _ = root(track, one, ahead, measure)
+    else:
+        point = minimum(track, one, ahead, measure)
+        if not is_singular(point):
+            return two, 1.0
+    past = float(track.step_between(two, point) @ unit)
+    if abs(past) <= HIT:
+        return two, 1.0
+    return None if past > 0.0 else (point, 1.0 + past / size)
+
+
+def kernels_beside(track: Track, point: TrackPoint, unit: Vector, columns: Mask, rank: int) -> list[Matrix]:
+    """Kernels of a block on both sides of a singular point, where the block has its generic rank.
+
+    Args:
+        track: The track.
+        point: The singular point.
+        unit: Direction of the track there, about (free rates, then s).
+        columns: The block.
+        rank: Its generic rank.
+    """
+    found = []
+    for way in (BESIDE, -BESIDE):
+        beside, _ = track.corrected(track.moved(point, way * unit), normal=unit)
+        block = measured_block(beside.equations, columns, rank)
+        if decided(block.jacobian, beside.residual, block.values).rank == rank:
+            found.append(block.right[:, rank:])
+    return found

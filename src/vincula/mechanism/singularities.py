@@ -15,11 +15,20 @@ import numpy as np
 
 from vincula.arrays import Matrix, Vector
 from vincula.errors import listing
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem
+from vincula.mechanism.closure_problem import ClosureProblem
 from vincula.mechanism.closure_solver import solve
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import Holding, problem_for
-from vincula.mechanism.watching import SingularityKind, Watch, decided, locked, participation, watches
+from vincula.mechanism.watching import (
+    ZERO_SHARE,
+    SingularityKind,
+    Watch,
+    beyond,
+    decided,
+    locked,
+    watches,
+)
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import negligible
 
@@ -39,8 +48,9 @@ class Singularity:
     Attributes:
         kind: `platform free` (the member moves with the motors locked), `motors without authority`
             (motors move with the member locked), or `internal` (loops or passive joints alone).
-        joints: Share of every joint in the singular direction, largest first.
-        motors: The motors that it is about.
+        joints: Share of every joint in the singular direction, largest first; squares of all shares and of
+            the member's add up to one.
+        motors: The motors that it is about: those locked, or those that move.
         member: Name of the reference member, empty when none is named.
         member_share: Share of the member's motion.
     """
@@ -57,7 +67,7 @@ class Singularity:
         if self.kind == "platform free":
             return f"{self.member!r} becomes free: it can move with {motors} locked (joints {shares})"
         if self.kind == "motors without authority":
-            return f"motors lose authority: they can move with {self.member!r} locked (joints {shares})"
+            return f"motors lose authority: {motors} can move with {self.member!r} locked (joints {shares})"
         return f"inner degeneracy: joints gain a motion of their own (joints {shares})"
 
 
@@ -82,28 +92,69 @@ def singularities_at(
     for watch in watches(problem, chosen, locked(problem)):
         lost = _lost_direction(here.jacobian[:, watch.columns], residual, watch, around)
         if lost is not None:
-            found.append(classified(problem, watch, lost, chosen))
+            found.append(classified(problem, state, watch, *lost, chosen))
     return _distinct(found)
 
 
 def classified(
-    problem: ClosureProblem, watch: Watch, direction: Vector, motors: tuple[str, ...]
+    problem: ClosureProblem,
+    state: Vector,
+    watch: Watch,
+    kernel: Matrix,
+    direction: Vector,
+    motors: tuple[str, ...],
 ) -> Singularity:
-    """The singularity with a given singular direction of a block."""
-    shares = dict(participation(problem, watch.columns, direction))
-    full = np.zeros(problem.columns)
-    full[watch.columns] = direction
+    """The singularity of a block at a state.
+
+    Args:
+        problem: The equations.
+        state: The singular state.
+        watch: The block.
+        kernel: Orthonormal basis of its kernel there.
+        direction: The unit vector in it that is free at this state alone.
+        motors: Axes and drives that count as motors.
+    """
     where = problem.variables
-    part = float(np.linalg.norm(full[where.columns_of[MEMBER]])) if MEMBER in where.columns_of else 0.0
-    driven = float(np.linalg.norm([full[where.column[name]] for name in motors]))
+    outside = problem.rates_outside(state)
+    everything = np.vstack([np.eye(problem.columns), *outside.values()])[:, watch.columns]
+    full = _without_idle(everything, kernel, direction)
+    places = dict(where.columns_of)
+    start = problem.columns
+    for name, rates in outside.items():
+        places[name] = slice(start, start + len(rates))
+        start += len(rates)
+    shares = {name: float(np.linalg.norm(full[place])) for name, place in places.items()}
+    part = shares.pop(MEMBER, 0.0)
+    moving = {name: abs(float(full[where.column[name]])) for name in motors}
+    driven = float(np.linalg.norm(list(moving.values())))
     kind: SingularityKind = "internal"
     if watch.name == "motors locked" and not negligible(part, 1.0, SHARE):
         kind = "platform free"
     elif watch.name in ("member locked", "held") and not negligible(driven, 1.0, SHARE):
         kind = "motors without authority"
-    shares.pop(MEMBER, None)
+        motors = tuple(_named(moving))
     reference = problem.mechanism.reference
-    return Singularity(kind, shares, motors, reference.body if reference else "", part)
+    member = reference.body if reference else ""
+    return Singularity(kind, _named(shares), motors, member, part)
+
+
+def _named(shares: Mapping[str, float]) -> dict[str, float]:
+    """Those that are told in words, largest first."""
+    named = [(name, share) for name, share in shares.items() if share > ZERO_SHARE]
+    return dict(sorted(named, key=lambda item: -item[1]))
+
+
+def _without_idle(everything: Matrix, kernel: Matrix, direction: Vector) -> Vector:
+    """Rates of all joints in a singular direction, at right angles to those that are always free.
+
+    A rod that spins about itself everywhere has no part in it, whichever of its joints closes the loop.
+    """
+    along = kernel.T @ direction
+    idle = everything @ kernel @ svd(along[None, :])[2][:, 1:]
+    full = everything @ direction
+    if idle.shape[1]:
+        full = full - idle @ np.linalg.lstsq(idle, full, rcond=None)[0]
+    return np.asarray(full / np.linalg.norm(full))
 
 
 def _neighbours(
@@ -117,8 +168,8 @@ def _neighbours(
         return []
     rng = np.random.default_rng(0)
     found = []
-    for size in (NEARBY, -NEARBY):
-        mix = rng.normal(size=kernel.shape[1])
+    mix = rng.normal(size=kernel.shape[1])
+    for size in (NEARBY, -NEARBY):  # evenly about this state: what is linear in the distance cancels
         step = np.zeros(problem.columns)
         step[free] = size * (kernel @ (mix / np.linalg.norm(mix)))
         near = solve(problem, problem.variables.moved(state, step), free, iterations=40)
@@ -129,23 +180,22 @@ def _neighbours(
 
 def _lost_direction(
     jacobian: Matrix, residual: float, watch: Watch, around: list[tuple[Matrix, bool]]
-) -> Vector | None:
-    """The direction that is unconstrained here and constrained near by; None at a regular block."""
+) -> tuple[Matrix, Vector] | None:
+    """The kernel, and its direction that is constrained near by; None at a regular block."""
     _, values, right = svd(jacobian)
     rank = decided(jacobian, residual, values).rank
     kernel = right[:, rank:]
+    bases = []
     for other, away in around:
         if not away:
-            return kernel[:, 0] if watch.name == "loops" and kernel.shape[1] else None
+            return (kernel, kernel[:, 0]) if watch.name == "loops" and kernel.shape[1] else None
         block = other[:, watch.columns]
-        _, _, there = svd(block)
         generic = decided(block, 0.0).rank
         if generic > rank:
-            rest = kernel - there[:, generic:] @ (there[:, generic:].T @ kernel)
-            _, _, mix = svd(rest)
-            direction: Vector = kernel @ mix[:, 0]
-            return direction / np.linalg.norm(direction)
-    return None
+            bases.append(svd(block)[2][:, generic:])
+    if not bases:
+        return None
+    return kernel, beyond(kernel, bases)
 
 
 def _distinct(found: list[Singularity]) -> tuple[Singularity, ...]:

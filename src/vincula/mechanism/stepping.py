@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,7 @@ from vincula.arrays import Vector
 from vincula.mechanism.closure_problem import ClosureProblem, Equations
 from vincula.mechanism.closure_solver import Limits
 from vincula.mechanism.closure_values import Mask
-from vincula.mechanism.locating import Measuring, minimum, root
+from vincula.mechanism.locating import HIT, Measuring, kernels_beside, minimum, root, settled
 from vincula.mechanism.singularities import Singularity, classified
 from vincula.mechanism.tracks import Track, TrackPoint
 from vincula.mechanism.watching import Measure, SingularityKind, Watch, decided, measured_block
@@ -97,6 +98,7 @@ class Stepper:
         self.steps, self.passed = 0, list[Found]()
         self._size = LONGEST
         self._ranks: list[int] = []
+        self._told: Found | None = None
         self._first = True
 
     def ranks_at(self, equations: Equations) -> None:
@@ -127,12 +129,21 @@ class Stepper:
             if found is not None:
                 if found.turns or found.kind != "singularity" or not self._is_passed(found):
                     return found.point, found
-                self.passed.append(found)
+                if not self._is_told(found):
+                    self._told = found
+                    self.passed.append(found)
             before, here = here, there
         return here.point, None
 
     def _is_passed(self, found: Found) -> bool:
         return all(s.kind in self.through for s in found.singularities)
+
+    def _is_told(self, found: Found) -> bool:
+        """Whether it is the singularity passed last, met once more at the begin of the next step."""
+        if self._told is None:
+            return False
+        way = self.problem.variables.step_between(self._told.point.state, found.point.state)
+        return float(np.linalg.norm(way)) <= 10.0 * HIT
 
     def _measures(self, point: TrackPoint) -> tuple[Measure, ...]:
         return tuple(
@@ -187,28 +198,31 @@ class Stepper:
         )
 
     def _crossings(self, track: Track, here: _Here, there: _Here) -> list[Found]:
-        """Watched measures that change sign, or vanish at the end of the step."""
+        """Watched measures that change sign in the step, or vanish in it or at its end."""
         found = []
-        for k, watch in enumerate(self.watching):
+        for k in range(len(self.watching)):
             before, after = here.measures[k], there.measures[k]
-            if self._is_singular(there.point, k):
-                found.append(self._singular(track, watch, there.point, after, 1.0, there))
-            elif after.sign_against(before) < 0.0:
-                point, share = root(track, here.point, there.point, self._signed(k, before))
-                found.append(self._singular(track, watch, point, self._measures(point)[k], share, there))
+            signed = self._signed(k, before)
+            met: tuple[TrackPoint, float] | None = None
+            if before.has_sign and after.sign_against(before) < 0.0:
+                met = root(track, here.point, there.point, signed)
+            elif self._is_singular(there.point, k):
+                met = settled(track, here.point, there.point, signed, partial(self._is_singular, k=k))
+            if met is not None:
+                found.append(self._singular(track, k, *met, here, there))
         return found
 
     def _touches(self, track: Track, before: _Here, here: _Here, there: _Here) -> list[Found]:
         """Watched measures that touch zero near a local minimum without changing sign."""
         found = []
-        for k, watch in enumerate(self.watching):
+        for k in range(len(self.watching)):
             one, low, two = (h.measures[k].smallest for h in (before, here, there))
             if low > min(one, two) or low > 2.0 * max(one - low, two - low):
                 continue
             signed = self._signed(k, before.measures[k])
             point = minimum(track, before.point, there.point, signed)
             if self._is_singular(point, k):
-                found.append(self._singular(track, watch, point, self._measures(point)[k], 0.5, there))
+                found.append(self._singular(track, k, point, 0.5, before, there))
         return found
 
     def _limits(self, track: Track, here: _Here, there: _Here) -> list[Found]:
@@ -247,9 +261,16 @@ class Stepper:
         return decided(measure.jacobian, point.residual, measure.values).rank < self._ranks[k]
 
     def _singular(
-        self, track: Track, watch: Watch, point: TrackPoint, measure: Measure, share: float, there: _Here
+        self, track: Track, k: int, point: TrackPoint, share: float, here: _Here, there: _Here
     ) -> Found:
-        one = classified(self.problem, watch, measure.vanishing(), self.motors)
+        """What is singular at a point between two others, by the block that shows it."""
+        watch, rank = self.watching[k], self._ranks[k]
+        measure = measured_block(point.equations, watch.columns, rank)
+        around = []
+        if measure.right.shape[1] > rank:
+            chord = track.step_between(here.point, there.point)
+            around = kernels_beside(track, point, chord / np.linalg.norm(chord), watch.columns, rank)
+        one = classified(self.problem, point.state, watch, *measure.lost(around), self.motors)
         turns = bool(np.array_equal(watch.columns, track.free)) and float(there.tangent[-1]) <= 0.0
         return Found("singularity", point, share, (one,), turns=turns)
 

@@ -8,14 +8,15 @@ against the bases of the step before; so a simple singularity is a simple root.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
-from vincula.mechanism.closure_problem import MEMBER, ClosureProblem, Equations
+from vincula.mechanism.closure_problem import ClosureProblem, Equations
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import EPS, RankDecision, decide_rank
@@ -61,6 +62,11 @@ class Measure:
         """Smallest kept singular value: the distance to the nearest singular block, scaled units."""
         return float(self.values[self.rank - 1]) if self.rank else float("inf")
 
+    @property
+    def has_sign(self) -> bool:
+        """Whether the smallest kept value is above rounding, so that signs of determinants mean something."""
+        return decide_rank(self.jacobian, name="closure equations", values=self.values).rank == self.rank
+
     def solved(self, target: Vector) -> Vector:
         """Minimum-norm solution of jacobian @ x = target at the assumed rank."""
         kept = self.values[: self.rank]
@@ -75,9 +81,35 @@ class Measure:
         reduced = before.left[:, :r].T @ self.jacobian @ before.right[:, :r]
         return float(np.linalg.slogdet(reduced)[0]) or 1.0
 
-    def vanishing(self) -> Vector:
-        """The direction that stops being constrained: right vector of the smallest kept value."""
-        return np.asarray(self.right[:, self.rank - 1])
+    def lost(self, around: Sequence[Matrix]) -> tuple[Matrix, Vector]:
+        """The kernel where the smallest kept value vanishes, and the direction that is new in it.
+
+        There it cannot be told from what is never constrained (a rod that spins about its own axis)
+        by singular values: it is what the kernels around do not hold.
+
+        Args:
+            around: Orthonormal bases of the kernels at regular points near by, evenly about this one, so
+                that what is linear in their distance cancels; none where nothing is generically free.
+        """
+        kernel = self.right[:, self.rank - 1 :]
+        if kernel.shape[1] == 1 or not around:
+            return kernel, np.asarray(kernel[:, 0])
+        return kernel, beyond(kernel, around)
+
+
+def beyond(kernel: Matrix, others: Sequence[Matrix]) -> Vector:
+    """Unit vector of a kernel that is least in other kernels, on the average of them.
+
+    Args:
+        kernel: Orthonormal basis.
+        others: Orthonormal bases of smaller kernels.
+    """
+    inside = np.zeros((kernel.shape[1], kernel.shape[1]))
+    for other in others:
+        shared = other.T @ kernel
+        inside += shared.T @ shared
+    direction: Vector = kernel @ np.linalg.eigh(inside)[1][:, 0]
+    return direction / np.linalg.norm(direction)
 
 
 def measured(jacobian: Matrix, rank: int) -> Measure:
@@ -151,14 +183,3 @@ def locked(problem: ClosureProblem) -> Mask:
 
 ZERO_SHARE: Final = 1e-3
 """A joint whose part in a singular direction is below this is not named in words."""
-
-
-def participation(problem: ClosureProblem, columns: Mask, direction: Vector) -> Mapping[str, float]:
-    """Share of every joint, drive and of the member in a direction of a block, largest first."""
-    full = np.zeros(problem.columns)
-    full[columns] = direction
-    shares = {
-        name: float(np.linalg.norm(full[place])) for name, place in problem.variables.columns_of.items()
-    }
-    named = {name: share for name, share in shares.items() if share > ZERO_SHARE}
-    return dict(sorted(named.items(), key=lambda item: -item[1]))

@@ -52,7 +52,11 @@ def test_stops_where_the_platform_becomes_free() -> None:
     assert event is not None
     assert event.kind == "singularity"
     assert [s.kind for s in event.singularities] == ["platform free"]
-    assert set(event.joints[:2]) == {"o2", "o4"}
+    # between the locked cranks the two links turn like a stretched knee: o3 by as much as o2 and o4 together
+    shares = event.singularities[0].joints
+    assert event.joints == ("o3", "o2", "o4")
+    assert shares["o3"] == pytest.approx(shares["o2"] + shares["o4"], abs=1e-9)
+    assert shares["o2"] / shares["o4"] == pytest.approx(math.sqrt(2.0), abs=1e-9)
     angle = brentq(short, 0.0, 0.5, xtol=1e-15)
     assert path.end["o1"][0] == pytest.approx(angle, abs=1e-13)
     # the other angles change like the root of the distance to the fold: located to 1e-8 all the same
@@ -80,7 +84,10 @@ def test_stops_where_motors_lose_authority() -> None:
     height = math.sqrt(reach**2 - 4.0) - 1.0
     assert path.stopped is not None
     assert [s.kind for s in path.stopped.singularities] == ["motors without authority"]
-    assert path.stopped.joints == ("o4", "o5")
+    # the point rests, the stretched leg buckles
+    shares = path.stopped.singularities[0].joints
+    assert path.stopped.joints == ("o4", "o3", "o5")
+    assert shares["o4"] == pytest.approx(shares["o3"] + shares["o5"], abs=1e-9)
     assert joint_point(mechanism, path.end, "o3")[1] == pytest.approx(height, abs=1e-13)
     assert path.stopped.parameter == pytest.approx((height - 0.5) / mechanism.length, abs=1e-13)
 
@@ -207,3 +214,45 @@ def test_there_and_back_is_home(o1: float, o5: float) -> None:
     np.testing.assert_allclose(joint_point(mechanism, path[1], "o3"), five_bar_o3(o1, o5), atol=1e-13)
     for joint, values in path.end.items():
         np.testing.assert_allclose(values, mechanism.home[joint], atol=1e-13)
+
+
+@pytest.mark.parametrize("before", [1e-6, 1e-7, 1e-8, 0.0, -1e-8])
+def test_a_waypoint_next_to_a_singularity_does_not_blur_it(before: float) -> None:
+    """Within 1e-7 no rank is decided; the singularity is located all the same: crank and coupler in line."""
+    ground, crank, coupler, rocker = 3.0, 0.5, 3.0, 2.0
+    mechanism = four_bar(ground, crank, coupler, rocker).with_reference("rocker")
+    far = coupler + crank
+    line = math.acos((ground**2 + far**2 - rocker**2) / (2 * ground * far))
+    expected = line + 1.5 * math.pi  # the crank is drawn upright and goes round to the line
+    path = mechanism.follow(
+        [{"a": expected - before}, {"a": expected + 1.0}], through=["motors without authority"]
+    )
+    assert path.complete
+    assert path.passed[-1].configuration["a"][0] == pytest.approx(expected, abs=1e-10)
+    assert [s.motors for s in path.passed[-1].singularities] == [("a",)]
+
+
+def test_a_rod_that_spins_has_no_part_in_a_singularity() -> None:
+    """A rod with a ball at both ends can always turn about itself: it does not become free."""
+    mechanism = vc.Mechanism.spatial(
+        joints=[
+            vc.Revolute("crank", "ground", "arm", at=(0, 0, 0), axis=(0, 0, 1)),
+            vc.Spherical("near", "arm", "rod", at=(0, 1, 0.1)),
+            vc.Spherical("far", "rod", "rocker", at=(2, 1.5, -0.1)),
+            vc.Revolute("hinge", "rocker", "ground", at=(2, 0, 0), axis=(0, 0, 1)),
+        ],
+        reference=vc.Reference("rocker"),
+        active=["crank"],
+    )
+    path = mechanism.follow([{"crank": -3.0}])
+    assert path.stopped is not None
+    found = path.stopped.singularities[0]
+    assert found.kind == "motors without authority"
+    near, far = (joint_point(mechanism, path.end, name) for name in ("near", "far"))
+    assert abs(np.cross(near, far - near)[2]) < 1e-8, "the rod passes through the axis of the crank"
+    # the rocker rests, the rod turns about `far`; its spin shares the turn of the crank between both balls
+    turn, rod = np.array([0.0, 0.0, 1.0]), (far - near) / np.linalg.norm(far - near)
+    swing = -np.cross(rod, np.cross(turn, near)) / np.linalg.norm(far - near) + 0.5 * (rod @ turn) * rod
+    expected = {"crank": 1.0, "near": np.linalg.norm(swing - turn), "far": np.linalg.norm(swing)}
+    size = math.sqrt(sum(value**2 for value in expected.values()))
+    assert found.joints == pytest.approx({name: value / size for name, value in expected.items()}, abs=1e-6)
