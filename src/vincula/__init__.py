@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     )
     from vincula.files.builder import FileBuilder, builder
     from vincula.files.load import load
+    from vincula.files.save import save
     from vincula.kernels.compiled import CompiledMechanism
     from vincula.kernels.compiled import compile_mechanism as compile  # noqa: A004
     from vincula.kernels.evaluation import Evaluation
@@ -142,6 +143,7 @@ __all__ = [
     "passive_force_ellipsoid",
     "plot_comparison",
     "plot_mechanism",
+    "save",
     "save_figure",
     "smallest_singular_value",
     "yoshikawa_volume",
@@ -151,6 +153,7 @@ _HOME = {
     "FileBuilder": "vincula.files.builder:FileBuilder",
     "builder": "vincula.files.builder:builder",
     "load": "vincula.files.load:load",
+    "save": "vincula.files.save:save",
     "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
     "condition_number": "vincula.analysis.indices:condition_number",
     "inverse_condition_number": "vincula.analysis.indices:inverse_condition_number",

@@ -73,7 +73,7 @@ def test_an_old_file_is_kept_unless_forced(run, tmp_path: Path) -> None:
     ("words", "message"),
     [
         (["example:five-bar"], "OUT"),
-        (["example:five-bar", "out.urdf"], ".yaml, .yml, .json"),
+        (["example:five-bar", "out.usd"], ".yaml, .yml, .json"),
         (["example:five-bar", "no/such/folder/out.yaml"], "cannot be written"),
         (["nosuch.xml", "out.yaml"], "no such file"),
         (["example:five-bar", "out.yaml", "--reference", "ground"], "ground"),
@@ -85,3 +85,29 @@ def test_refusals(run, tmp_path: Path, monkeypatch, words: list[str], message: s
     assert result.stdout == ""
     assert message in result.stderr
     assert not list(tmp_path.iterdir())
+
+
+ROBOTS = [("mjcf", ".xml"), ("sdf", ".sdf"), ("urdf-plus", ".urdf"), ("urdf-gepetto", ".urdf")]
+
+
+@pytest.mark.parametrize(("to", "ending"), ROBOTS)
+def test_one_robot_in_every_format(run, run_json, tmp_path: Path, to: str, ending: str) -> None:
+    pytest.importorskip("mujoco")
+    before = run_json("analyze", "example:delta")
+    target = str(tmp_path / f"delta{ending}")
+    found = run_json("convert", "example:delta", target, "--to", to)
+    assert found["format"] == to
+    assert found["files"] == [target] + [str(tmp_path / "delta.yaml")] * (to == "urdf-gepetto")
+    member = next(text for text in found["changed"] if "--reference" in text).partition("--reference ")[2]
+    after = run_json("analyze", target, "--reference", member)
+    for one in (before, after):
+        one["mobility"]["summary"].pop("static_indeterminacy")
+    same_analysis(before, after)
+
+
+def test_a_planar_drawing_needs_lossy_in_a_robot_file(run, tmp_path: Path) -> None:
+    target = tmp_path / "five-bar.xml"
+    assert "the plane" in run("convert", "example:five-bar", str(target), code=2).stderr
+    assert not target.exists()
+    assert "lost: the plane" in run("convert", "example:five-bar", str(target), "--lossy").stderr
+    assert "loop" in run("inspect", str(target)).stdout
