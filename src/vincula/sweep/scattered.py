@@ -74,6 +74,7 @@ class LowDiscrepancy(Row):
     upper: Vector
     seed: int
     sequence: Literal["sobol", "halton"]
+    _running: list[tuple[Any, int]]
 
     def __init__(
         self,
@@ -87,21 +88,32 @@ class LowDiscrepancy(Row):
         if sequence == "sobol" and points > MOST_SOBOL_POINTS:
             raise ModelError(f"a Sobol sequence has at most {MOST_SOBOL_POINTS} points: choose halton")
         _set_ranges(self, ranges, points, seed)
+        object.__setattr__(self, "_running", [])
         object.__setattr__(self, "sequence", sequence)
 
     def at(self, indices: Indices) -> Matrix:
         """Consecutive points."""
         from scipy.stats import qmc
 
+        begin = int(indices[0])
+        if self._running and self._running[0][1] == begin:
+            engine, _ = self._running.pop()
+            return self._next(engine, begin, len(indices))
         kind = qmc.Sobol if self.sequence == "sobol" else qmc.Halton
         word = "rng" if "rng" in inspect.signature(kind).parameters else "seed"
         engine = kind(len(self.names), scramble=True, **{word: np.random.default_rng(self.seed)})
-        if self.sequence == "sobol" and indices[0]:
-            engine.fast_forward(int(indices[0]))
+        if self.sequence == "sobol" and begin:
+            engine.fast_forward(begin)
         else:  # point i follows from i alone: fast_forward would draw all points before it
-            engine.num_generated = int(indices[0])
-        unit = _quiet(engine, len(indices))
-        return self.lower + unit * (self.upper - self.lower)
+            engine.num_generated = begin
+        return self._next(engine, begin, len(indices))
+
+    def _next(self, engine: Any, begin: int, count: int) -> Matrix:
+        """Points from where an engine stands; it is kept, because the next stretch is asked for next."""
+        unit = _quiet(engine, count)
+        self._running[:] = [(engine, begin + count)]
+        found: Matrix = self.lower + unit * (self.upper - self.lower)
+        return found
 
     def description(self) -> dict[str, Any]:
         """Sequence, ranges, number and seed."""

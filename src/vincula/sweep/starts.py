@@ -1,0 +1,86 @@
+"""Where the closing of every chunk starts, fixed before the run: a coarse path followed once, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vincula.arrays import Matrix, Vector
+from vincula.errors import ClosureError, VinculaError
+from vincula.kernels.closing import pose_from
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.paths import Path
+
+if TYPE_CHECKING:
+    from vincula.sweep.sweep import Sweep
+
+THROUGH: Final = ("platform free", "motors without authority", "internal")
+"""Singularities that the coarse path passes where it goes on beyond them."""
+
+
+def coarse_path(sweep: Sweep, last: Vector | None, chunks: range) -> Iterator[tuple[int, Vector]]:
+    """A configuration near the first point of each chunk, one after the other.
+
+    From the one before it the path to the next first point is followed, through singularities where it
+    goes on beyond them.  Where it ends early, or the geometry changes as well, the loops are closed at the
+    first point from there; where that fails, the chunk starts from the last configuration there was.
+
+    Args:
+        sweep: The sweep.
+        last: Configuration of the chunk before the first one; None for the sweep's own start.
+        chunks: Chunks to find starts for, in order.
+    """
+    mechanism, inputs = sweep.mechanism, sweep.inputs
+    current = inputs.start if last is None else mechanism.home.from_flat(last)
+    rows, parameters = inputs.rows(np.concatenate([_first(sweep, chunk) for chunk in chunks]))
+    for k, chunk in enumerate(chunks):
+        values = {name: float(column[k]) for name, column in parameters.items()}
+        current = _next(sweep, mechanism, rows[k], values, current)
+        yield chunk, current.flat
+
+
+def all_starts(sweep: Sweep, upto: int) -> dict[int, Vector]:
+    """Starts of the chunks up to one of them."""
+    return dict(coarse_path(sweep, None, range(upto + 1)))
+
+
+def _first(sweep: Sweep, chunk: int) -> Matrix:
+    """The first point of the walk through a chunk."""
+    if not sweep.work.scattered:
+        return sweep.points.at(sweep.chunking.indices(chunk)[:1])
+    values = sweep.values(chunk)
+    return values[sweep.work.order(values, sweep.chunking.extent(chunk))[:1]]
+
+
+def _next(
+    sweep: Sweep, mechanism: Mechanism, row: Vector, parameters: dict[str, float], current: Configuration
+) -> Configuration:
+    if parameters and sweep.compiled.build is not None:
+        return _closed(sweep.compiled.build(**parameters), sweep, row, current) or current
+    try:
+        path = _followed(mechanism, sweep, row, current)
+    except VinculaError:
+        return _closed(mechanism, sweep, row, current) or current
+    if path.complete:
+        return path.end
+    return _closed(mechanism, sweep, row, path.end) or _closed(mechanism, sweep, row, current) or path.end
+
+
+def _followed(mechanism: Mechanism, sweep: Sweep, row: Vector, current: Configuration) -> Path:
+    if sweep.inputs.given == "reference":
+        return mechanism.follow([pose_from(row)], start=current, limits=False, through=THROUGH)
+    motors = dict(zip(mechanism.active, map(float, row), strict=True))
+    return mechanism.follow([motors], start=current, limits=False, through=THROUGH)
+
+
+def _closed(mechanism: Mechanism, sweep: Sweep, row: Vector, near: Configuration) -> Configuration | None:
+    try:
+        if sweep.inputs.given == "reference":
+            return mechanism.close(near, pose=pose_from(row), attempts=1)
+        motors = dict(zip(mechanism.active, map(float, row), strict=True))
+        return mechanism.close(near, motors=motors, attempts=1)
+    except ClosureError:
+        return None
