@@ -26,6 +26,10 @@ class Space:
     twist_components: tuple[str, ...]
     wrench_components: tuple[str, ...]
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """A pickle or copy is the same object again: there is one plane, and tests ask `is PLANAR`."""
+        return space_named, (self.name,)
+
     @property
     def dimension(self) -> int:
         """Number of components d of a twist: 3 in the plane, 6 in space."""
