@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import queue
 import time
 from collections.abc import Iterator
 from functools import lru_cache
@@ -56,6 +57,7 @@ class ClusterExecutor(Executor):
         self._flying: dict[Any, Task] = {}
         self._began: dict[Any, float] = {}
         self._tries: dict[int, int] = {}
+        self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
     def outcomes(self, tasks: Iterator[Task]) -> Iterator[list[Outcome]]:
         """See `Executor`."""
@@ -65,11 +67,21 @@ class ClusterExecutor(Executor):
             self.running = len(self._flying)
             if not self._flying:
                 break
+            yield [found for future in self._ended() if (found := self._outcome(future)) is not None]
+            if hung := self._hung():
+                yield hung
+
+    def _ended(self) -> Iterator[Any]:
+        """Futures that have ended and are still ours, after a moment at most."""
+        timeout = TICK
+        while True:
             try:
-                done = self._dask.wait(list(self._flying), timeout=TICK, return_when="FIRST_COMPLETED").done
-            except TimeoutError:
-                done = set()
-            yield [found for future in done if (found := self._outcome(future)) is not None] + self._hung()
+                future = self._done.get(timeout=timeout)
+            except queue.Empty:
+                return
+            timeout = 0.0
+            if future in self._flying:
+                yield future
 
     def _fill(self, tasks: Iterator[Task], more: bool) -> bool:
         if self._stopped:
@@ -87,6 +99,7 @@ class ClusterExecutor(Executor):
             _computed, self._payload, task, pure=False, key=f"chunk-{task.chunk}-{time.monotonic_ns()}"
         )
         self._flying[future], self._began[future] = task, time.monotonic()
+        future.add_done_callback(self._done.put)
 
     def _outcome(self, future: Any) -> Outcome | None:
         task = self._flying.pop(future)
