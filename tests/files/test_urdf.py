@@ -53,111 +53,23 @@ def test_mimic_is_a_coupling_and_the_follower_no_motor(tmp_path: Path) -> None:
 
 
 def test_a_coupling_of_urdf_plus_runs_over_both_ways_down(tmp_path: Path) -> None:
-    ends = '<predecessor link="coupler"/><successor link="rocker"/>'
-    inside = f'{TREE}<coupling name="c">{ends}<ratio value="3"/></coupling>'
-    robot, _ = loaded(tmp_path, inside)
-    (coupling,) = robot.couplings
-    assert coupling.rates == {"o1": 3.0, "o2": 3.0, "o4": -1.0}
-
-
-def test_joints_with_a_command_interface_are_motors(tmp_path: Path) -> None:
-    inside = TREE + (
-        '<ros2_control name="c" type="system"><hardware/>'
-        '<joint name="o1"><command_interface name="position"/></joint>'
-        '<joint name="o2"><state_interface name="position"/></joint></ros2_control>'
+    ends = (
+        '<predecessor link="c"><origin xyz="1 0 0"/></predecessor>'
+        '<successor link="base"><origin xyz="3 0 0"/></successor>'
     )
-    robot, report = loaded(tmp_path, inside)
-    assert robot.active == ("o1",)
-    assert report.counts()["ros2_control joint"]["used"] == 2
-
-
-def test_passive_joints_of_an_srdf_file(tmp_path: Path) -> None:
-    srdf = '<robot name="linkage"><passive_joint name="o2"/><group name="g"/></robot>'
-    (tmp_path / "robot.srdf").write_text(srdf, encoding="utf-8")
-    robot, report = loaded(tmp_path, TREE)
-    assert robot.active == ("o1", "o4")
-    assert report.counts()["passive_joint"]["used"] == 1
-    assert report.counts()["SRDF group"]["ignored"] == 1
-
-
-def test_side_files_by_name(tmp_path: Path) -> None:
-    path = tmp_path / "other.urdf"
-    path.write_text(urdf(TREE + four_bar.GEPETTO_TREE), encoding="utf-8")
-    side = tmp_path / "my-loops.yaml"
-    side.write_text(four_bar.GEPETTO["6d"], encoding="utf-8")
-    assert len(vc.load(path, beside=[side]).residuals()) == 1
-    assert len(vc.load(path).residuals()) == 0
-    words = ["inspect", str(path), "--loops", str(side), "--json"]
-    assert '"o1"' in CliRunner().invoke(cli, words).stdout
-    with pytest.raises(vc.FileError, match="this is none"):
-        vc.load("example:five-bar", beside=[side])
-    refused = CliRunner().invoke(cli, ["inspect", "example:five-bar", "--loops", str(side)])
-    assert refused.exit_code == 2
-
-
-def test_harmless_strangers_are_ignored_and_possible_loops_refused(tmp_path: Path) -> None:
-    _, report = loaded(
-        tmp_path, TREE + '<mood colour="blue"/><gazebo reference="crank"><mu1>1</mu1></gazebo>'
-    )
-    assert report.counts()["mood"] == {"total": 1, "used": 0, "ignored": 1, "repaired": 0}
-    assert report.counts()["gazebo mu1"]["ignored"] == 1
-    for stranger in ('<rope from="crank" to="rocker"/>', "<loop_closure/>", "<x><mimicJoint/></x>"):
-        with pytest.raises(vc.FileError, match="may be a loop"):
-            loaded(tmp_path, TREE + stranger)
-
-
-def test_plugins_that_couple_joints_are_said(tmp_path: Path) -> None:
-    plugin = '<gazebo><plugin name="p"><joint>o1</joint><mimicJoint>o2</mimicJoint></plugin></gazebo>'
-    _, report = loaded(tmp_path, TREE + plugin)
-    assert any("couples joints" in note for note in report.notes)
-
-
-def test_a_link_with_two_parents_is_noted(tmp_path: Path) -> None:
-    robot, report = loaded(tmp_path, TREE + four_bar.URDF["several parents"])
-    assert any("pin is the child of 2 joints" in note for note in report.notes)
-    assert "o3" in robot.active
-
-
-def test_springs_of_drake_leave_the_loop_open_and_say_so(tmp_path: Path) -> None:
-    _, report = loaded(tmp_path, TREE + "<drake:linear_bushing_rpy/>")
-    assert any("spring" in note for note in report.notes)
-
-
-def test_joints_of_drake(tmp_path: Path) -> None:
-    links = '<link name="a"/><link name="b"/>'
-    ends = '<parent link="a"/><child link="b"/>'
-    for kind, inside, expected in (
-        ("ball", "", "spherical"),
-        ("universal", "", "universal"),
-        ("planar", "", "planar"),
-        ("screw", '<axis xyz="0 0 1"/><drake:screw_thread_pitch value="0.02"/>', "screw"),
-    ):
-        text = f'{links}<drake:joint name="j" type="{kind}">{ends}{inside}</drake:joint>'
-        robot, _ = loaded(tmp_path, text)
-        assert robot.joints[0].type == expected
-    pose = robot.body_poses(robot.configuration({"j": np.pi}))["b"]
-    assert pose.position == pytest.approx([0.0, 0.0, 0.01], abs=1e-15)
-    universal, _ = loaded(tmp_path, f'{links}<drake:joint name="j" type="universal">{ends}</drake:joint>')
-    turned = universal.body_poses(universal.configuration({"j": [0.3, 0.4]}))["b"].rotation
-    c, s = np.cos([0.3, 0.4]), np.sin([0.3, 0.4])
-    first = np.array([[1, 0, 0], [0, c[0], -s[0]], [0, s[0], c[0]]])
-    second = np.array([[c[1], 0, s[1]], [0, 1, 0], [-s[1], 0, c[1]]])
-    assert turned == pytest.approx(first @ second, abs=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("folder", "loops"),
-    [
-        ("gepetto_5bar_linkage", 1),
-        ("gepetto_5bar_linkage_iso3d", 1),
-        ("gepetto_5bar_linkage_iso6d", 1),
-        ("gepetto_cassie_like", 2),
-        ("gepetto_robot_delta", 3),
-    ],
-)
-def test_real_robots_are_read_without_an_unexplained_element(models: Path, folder: str, loops: int) -> None:
-    robot, report = load_with_report(models / folder / "robot_nomesh.urdf")
-    assert len(robot.residuals()) == loops
-    assert report.counts()["closed_loop"]["used"] == loops
-    assert all(entry.detail for entry in report.entries if entry.fate != "used")
-    assert "not known" not in str(report)
+    point = f'<constraint name="tip" type="position">{ends}</constraint>'
+    wheels = '<predecessor link="a"/><successor link="c"/><ratio value="2"/>'
+    wheel = f'<constraint name="gear" type="rolling">{wheels}</constraint>'
+    for extra, name in ((point, "tip"), (wheel, "gear")):
+        path = tmp_path / f"{name}.urdf"
+        path.write_text(SERIAL.format(extra), encoding="utf-8")
+        robot = vc.load(path)
+        if name == "tip":
+            assert robot.joint["tip"].type == "spherical"
+            assert robot.residuals()[0].gap < 1e-15
+        else:
+            # The way to a is a part of the way to c: what is left is the way from a to c.
+            assert dict(robot.couplings[0].rates) == {"mot_b_left": -1.0, "to_c": -1.0}
+    path.write_text(SERIAL.format(point.replace("position", "glue")), encoding="utf-8")
+    with pytest.raises(vc.FileError, match="glue"):
+        vc.load(path)

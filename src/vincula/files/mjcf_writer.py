@@ -188,7 +188,7 @@ class _Writer:
             )
         balls = [x.name for x in tree.loops if x.type == "spherical" and not mechanism.joint[x.name].closure]
         if balls:
-            found.append(f"loops closed by balls are connects, without joint values: {listing(balls, 8)}")
+            found.append(f"loops closed by balls are connects, without joint values or rates: {listing(balls, 8)}")
         opened = [loop.name for loop in tree.loops if loop.open]
         if opened:
             found.append(

@@ -63,7 +63,7 @@ class PlusLoops:
         """What is held in another form, one sentence a thing."""
         loops = [x.name for x in self._tree.loops if not x.carried]
         lost = [name for name in loops if not self._mechanism.joint[name].closure]
-        return [f"loop joints have no joint values: {listing(lost, 8)}"] if lost else []
+        return [f"loop joints have no joint values or rates: {listing(lost, 8)}"] if lost else []
 
     def _loop(self, loop: Loop) -> Iterator[str]:
         yield f'<loop name={quoteattr(loop.name)} type="{loop.type}">'
@@ -177,7 +177,7 @@ class GepettoLoops:
         found = []
         loops = [loop.name for loop in self._tree.loops if not loop.carried]
         if loops:
-            found.append(f"loops are named by their frames, without joint values: {listing(loops, 8)}")
+            found.append(f"loops are named by their frames, without joint values or rates: {listing(loops, 8)}")
         called = [motor for motor, axis in self._mechanism.motors.items() if motor != axis]
         if called:
             found.append(f"motors are named by their joints: {listing(called, 8)}")

@@ -1,4 +1,9 @@
-"""Drake's extensions in URDF files: ball, weld and distance constraints, `<drake:joint>`."""
+"""Drake's extensions in URDF files: ball, weld and distance constraints, `<drake:joint>`.
+
+Source: multibody/parsing/parsing_doxygen.h and detail_common.h of RobotLocomotion/drake: children of a ball
+constraint are `drake:ball_constraint_body_A name=`, `..._p_AP value=` and B with Q likewise; values of
+`drake:joint` are ball, planar, universal.  A weld constraint is understood in the same spelling.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,13 @@
 """Gepetto side files: `robot.yaml` beside `robot.urdf`, with the loops and the motors.
 
 `closed_loop` lists pairs of frames that coincide, `type` how (6d: position and orientation, 3d:
-position), `name_mot` the joints with motors, `joint_name` and `joint_type` joints of another type than
-the URDF file says (SPHERICAL).  A frame is a link, or a joint, which stands for its child link.
+position; in either case of letters), `name_mot` the joints with motors, `joint_name` and `joint_type`
+joints of another type than the URDF file says: SPHERICAL, CARDAN (about x, then about y of the joint's
+frame, whatever its axis says) and FIXED.  A frame is a link, or a joint, which stands for its child link.
+
+Source: `completeRobotLoader` and `ActuationModel` of Gepetto/example-parallel-robots.  They take a name in
+`name_mot` for every joint whose name contains it; here that is done only for a name that no joint has,
+because "motor_knee" is also a part of "spherical_motor_knee_holder".
 """
 
 from __future__ import annotations
@@ -10,6 +15,8 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from vincula.files.limits import Limits
 from vincula.files.problems import form_of, shown
@@ -27,9 +34,10 @@ if TYPE_CHECKING:
 KEYS: Final = ("closed_loop", "type", "name_mot", "joint_name", "joint_type")
 LOOPS: Final = {"6d": "fixed", "3d": "spherical"}
 """Kinds of loops, and the joint that stands for them; both give rows only, as in Pinocchio."""
-JOINTS: Final = {"SPHERICAL": "spherical"}
+JOINTS: Final = {"SPHERICAL": "spherical", "CARDAN": "universal", "FIXED": "fixed"}
 """Joint types that a side file may put in place of the URDF file's."""
 
+_X, _Y = np.eye(3)[:2]
 _SIGN: Final = re.compile(r"^\s*closed_loop\s*:", re.MULTILINE)
 
 
@@ -108,7 +116,8 @@ class _SideFileReader:
             self._add(("type",), got=f"{len(kinds)} types", expected=f"{len(pairs)}, one a closed_loop")
             return
         for i, (pair, kind) in enumerate(zip(pairs, kinds, strict=True)):
-            if not isinstance(kind, str) or kind not in LOOPS:
+            closure = LOOPS.get(kind.lower(), "") if isinstance(kind, str) else ""
+            if not closure:
                 self._add(
                     ("type", i), got=form_of(kind), expected=" or ".join(LOOPS), name=str(kind), choices=LOOPS
                 )
@@ -122,7 +131,7 @@ class _SideFileReader:
             self._draft.joints.append(
                 DraftJoint(
                     name=f"loop:{pair[0]}-{pair[1]}",
-                    type=LOOPS[kind],
+                    type=closure,
                     parent=links[0],
                     child=links[1],
                     on_parent=Pose.identity(3),
@@ -132,7 +141,7 @@ class _SideFileReader:
                     place=self._document.place(("closed_loop", i)),
                 )
             )
-            self._report.used("closed_loop", f"{pair[0]}-{pair[1]}", f"{kind}: {LOOPS[kind]} closure")
+            self._report.used("closed_loop", f"{pair[0]}-{pair[1]}", f"{kind}: {closure} closure")
 
     def _retype(self, names: list[Any], types: list[Any]) -> None:
         if len(names) != len(types):
@@ -147,17 +156,27 @@ class _SideFileReader:
             else:
                 at = joints[name]
                 old = self._draft.joints[at]
-                self._draft.joints[at] = replace(old, type=JOINTS[kind], axis=None, limits=())
+                axes = (_X, _Y) if kind == "CARDAN" else (None, None)
+                self._draft.joints[at] = replace(
+                    old, type=JOINTS[kind], axis=axes[0], second_axis=axes[1], limits=()
+                )
                 self._report.repaired("joint", name, f"{JOINTS[kind]}, as the side file says, not {old.type}")
 
     def _motors(self, names: list[Any], given: bool) -> None:
-        joints = {j.name for j in self._draft.joints if not j.closure and j.type != "fixed"}
+        joints = [j.name for j in self._draft.joints if not j.closure and j.type != "fixed"]
+        found: dict[str, str] = {}
         for i, name in enumerate(names):
-            if not isinstance(name, str) or name not in joints:
+            meant = [name] if name in joints else []
+            if not meant and isinstance(name, str) and name:
+                meant = [joint for joint in joints if name in joint]
+            if not meant:
                 self._add(
                     ("name_mot", i), got=f"joint {form_of(name)}", name=str(name), choices=sorted(joints)
                 )
+            elif meant != [name]:
+                self._report.note(f"name_mot: {name} stands for {', '.join(meant)}, whose names contain it")
+            found |= dict(zip(meant, meant, strict=True))
         if given:
-            self._draft.motors = {str(name): str(name) for name in names}
-            for name in self._draft.motors:
+            self._draft.motors = found
+            for name in found:
                 self._report.used("motor", name)

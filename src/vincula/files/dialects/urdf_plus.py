@@ -9,6 +9,12 @@
 
 A coupling relates the joints on the two ways down from the nearest common ancestor of both links: ratio
 times the sum over the predecessor's way is the sum over the successor's.
+
+Older files write `<constraint type="position">` for a point that coincides and `<constraint type="rolling">`
+with a ratio for a coupling; a ratio that is missing is 1.  An attribute `independent` of a joint chooses
+coordinates, not motors; it is not used.
+
+Source: src/Urdf/constraint.cpp and src/Dynamics/ClusterTreeParsing.cpp of ROAM-Lab-ND/generalized_rbda.
 """
 
 from __future__ import annotations
@@ -63,13 +69,36 @@ def read_loop(element: Element, draft: RobotDraft, values: XmlValues, report: Lo
         )  # fmt: skip
 
 
+def read_old_constraint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
+    """Add one `<constraint>` with a predecessor and a successor: a point, or wheels that roll."""
+    kind = element.attributes.get("type", "")
+    if kind == "rolling":
+        read_coupling(element, draft, values, report)
+        return
+    if kind != "position":
+        values.problems.add(
+            element.place, got=f"constraint type {shown(kind)}", name=kind, choices=("position", "rolling")
+        )
+        return
+    values.only(element, ("predecessor", "successor"))
+    values.name(element)
+    ends = [only_child(element, tag, values) for tag in ("predecessor", "successor")]
+    if ends[0] is None or ends[1] is None:
+        return
+    links = [link_named(end, draft, values) for end in ends if end is not None]
+    poses = [origin(end, values) for end in ends if end is not None]
+    if all(links) and poses[0] is not None and poses[1] is not None:
+        close_loop(element, draft, report, "spherical", ((links[0], poses[0]), (links[1], poses[1])))
+
+
 def read_coupling(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
     """Add one `<coupling>` to the draft."""
     values.only(element, ("predecessor", "successor", "ratio"))
     name = values.name(element)
     ends = [only_child(element, tag, values) for tag in ("predecessor", "successor")]
-    found = only_child(element, "ratio", values)
-    ratio = None if found is None else values.number(found, "value")
+    old = element.tag == "constraint" and not any(element.find_all("ratio"))
+    found = None if old else only_child(element, "ratio", values)
+    ratio = (1.0 if old else None) if found is None else values.number(found, "value")
     if found is not None and "value" not in found.attributes:
         values.problems.add(found.place, "attribute 'value' is missing")
     if ends[0] is None or ends[1] is None or ratio is None:

@@ -16,6 +16,7 @@ import numpy as np
 
 from vincula.arrays import Matrix, Vector
 from vincula.files.dialects.closing import close_loop, link_named, loop_type, only_child
+from vincula.files.dialects.urdf_plus import read_old_constraint
 from vincula.files.report import LoadReport
 from vincula.files.urdf_places import origin
 from vincula.files.xmltree import Element
@@ -30,7 +31,10 @@ _SAME = 1e-9
 
 
 def read_constraint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
-    """Add one `<constraint>` to the draft."""
+    """Add one `<constraint>` to the draft; one with a predecessor is an old form of URDF+."""
+    if any(element.find_all("predecessor")) or any(element.find_all("successor")):
+        read_old_constraint(element, draft, values, report)
+        return
     values.only(
         element,
         ("parent", "child", "parent_origin", "child_origin", "parent_axis", "child_axis", "axis", "origin",
