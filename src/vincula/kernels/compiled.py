@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike
 
 from vincula.arrays import Vector
 from vincula.errors import ModelError, ShapeError, listing
-from vincula.kernels.closing import Chain
-from vincula.kernels.evaluation import FAILED, OK, Evaluation
-from vincula.kernels.inputs import Batch, Given, batch_of
+from vincula.kernels.evaluation import Evaluation
+from vincula.kernels.inputs import Given, batch_of
+from vincula.kernels.one_by_one import Reasons, evaluate_one_by_one
 from vincula.kernels.plans import Plan, plan_for, refuse_bad_weights
 from vincula.kernels.quantities import Quantity, available, coordinates
-from vincula.kernels.reference_path import Arrays, Outcome
 from vincula.kernels.variants import Builder, Variants
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
@@ -130,26 +129,35 @@ class CompiledMechanism:
         self.variants.names_checked(settings)
         batch = batch_of(self.mechanism, given, configurations, start, settings)
         arrays = {quantity.name: quantity.empty(batch.lanes) for quantity in plan.quantities}
-        reasons = self._one_by_one(batch, plan, arrays)
+        reasons = Reasons()
+        evaluate_one_by_one(self.variants, plan, batch, arrays, range(batch.lanes), reasons)
         shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in arrays.items()}
-        return Evaluation(batch.shape, plan.by_name, shaped, lambda lane: reasons.get(lane, ""))
+        return Evaluation(batch.shape, plan.by_name, shaped, reasons)
 
     def at(
-        self, configuration: Values = None, quantities: Iterable[str] = ("kinematic.efficiencies",)
+        self,
+        configuration: Values = None,
+        quantities: Iterable[str] = ("kinematic.efficiencies",),
+        *,
+        given: Given = "configuration",
+        start: Values = None,
     ) -> Evaluation:
         """Chosen quantities at one configuration: `evaluate` for a control loop.
 
         Args:
-            configuration: A vector in the order of `coordinates`, or a mapping by joint; None for home.
-            quantities: Names out of `quantities`.
+            configuration: One vector, or a mapping; None for home.
+            quantities: Names out of `quantities`; quickest when the same tuple is given every time.
+            given: What the vector is, as for `evaluate`.
+            start: The configuration where closing starts.
 
         Raises:
-            ShapeError: Not one vector of `coordinates`.
+            ShapeError: Not one vector of the right size.
             UnknownNameError: A quantity or joint that does not exist.
         """
-        if not isinstance(configuration, Mapping) and np.ndim(configuration) > 1:  # type: ignore[arg-type]
-            raise ShapeError("configuration", np.shape(configuration), f"({len(self.coordinates)},)")  # type: ignore[arg-type]
-        return self.evaluate(configuration, quantities)
+        found = self.evaluate(configuration, quantities, given=given, start=start)
+        if found.shape:
+            raise ShapeError("configuration", found.shape, "one configuration; evaluate takes several")
+        return found
 
     def gradient(
         self,
@@ -187,31 +195,6 @@ class CompiledMechanism:
             found = plan_for(self.mechanism, self._quantities, names, self.weights)
             self._plans[names] = found
         return found
-
-    def _one_by_one(self, batch: Batch, plan: Plan, arrays: Arrays) -> dict[int, str]:
-        """Evaluate every lane through the reference path; reasons by lane."""
-        reasons: dict[int, str] = {}
-        chain = Chain(batch) if batch.given != "configuration" else None
-        for lane in range(batch.lanes):
-            outcome = self._one(batch, plan, arrays, chain, lane)
-            arrays["status"][lane] = outcome.status
-            if outcome.status != OK:
-                reasons[lane] = outcome.reason
-        return reasons
-
-    def _one(self, batch: Batch, plan: Plan, arrays: Arrays, chain: Chain | None, lane: int) -> Outcome:
-        mechanism = self.variants.tried(batch.parameters_at(lane))
-        if isinstance(mechanism, str):
-            return Outcome(FAILED, mechanism)
-        if chain is None:
-            flat = mechanism.home.flat if batch.values is None else batch.values[lane]
-            return plan.reference.fill(mechanism, flat, arrays, lane)
-        closed = chain.closed(mechanism, lane)
-        if isinstance(closed, Outcome):
-            return closed
-        if "closure.iterations" in arrays:
-            arrays["closure.iterations"][lane] = closed.iterations
-        return plan.reference.fill(mechanism, closed.flat, arrays, lane)
 
 
 def compile_mechanism(

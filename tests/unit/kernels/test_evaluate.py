@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -223,3 +224,25 @@ def test_distance_to_the_nearest_singularity() -> None:
     assert distance[3, 2] < 1e-13  # the member is free, motors locked
     assert distance[3, 0] > 0.1
     assert found["summary"][3, 3] == 3
+
+
+def test_one_configuration_at_a_time(five_bar: vc.CompiledMechanism) -> None:
+    names = ("kinematic.efficiencies", "mobility")
+    alone = five_bar.at(five_bar.flat({}), names)
+    assert alone.shape == ()
+    np.testing.assert_array_equal(alone["kinematic.efficiencies"], five_bar.evaluate(None, names)[names[0]])
+    assert alone["mobility"] == 2
+    near = five_bar.at([-0.1, 0.1], ("configuration",), given="motors", start=five_bar.flat())
+    closed = five_bar.mechanism.close(motors={"o1": -0.1, "o5": 0.1})
+    np.testing.assert_allclose(near["configuration"], closed.flat, atol=1e-12)
+    with pytest.raises(vc.ShapeError, match="one configuration"):
+        five_bar.at(np.zeros((2, 5)))
+
+
+def test_threads_share_a_compiled_mechanism(five_bar: vc.CompiledMechanism) -> None:
+    motors = np.linspace([0.0, 0.0], [-0.5, 0.3], 8)
+    want = five_bar.evaluate(motors, given="motors")["kinematic.efficiencies"]
+    fresh = vc.compile(five_bar.mechanism)
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(lambda _: fresh.evaluate(motors, given="motors"), range(8)):
+            np.testing.assert_array_equal(found["kinematic.efficiencies"], want)
