@@ -112,7 +112,7 @@ class Weights:
             spec = [float(r.kind in ("contact", "member cut")) for r in model.rows]
         if spec is None or isinstance(spec, str):
             return identity_metric(len(names))
-        return _metric(spec, quantity, names)
+        return metric_of(spec, quantity, names)
 
 
 UNIT = Weights(explicit=False)
@@ -144,7 +144,18 @@ def characteristic_length_weights(length: float, space: Space | LinearModel) -> 
     )
 
 
-def _metric(spec: object, quantity: str, names: Sequence[tuple[str, ...]]) -> Metric:
+def metric_of(spec: object, quantity: str, names: Sequence[tuple[str, ...]]) -> Metric:
+    """The metric of one weight on named components.
+
+    Args:
+        spec: A number, a list, a mapping or a matrix.
+        quantity: What it weighs, for messages.
+        names: Names of every component.
+
+    Raises:
+        WeightError: Wrong size, not symmetric, negative or indefinite.
+        UnknownNameError: A name that is not that of a component.
+    """
     from vincula.numerics.metric import metric_of_diagonal, metric_of_matrix
 
     size = len(names)

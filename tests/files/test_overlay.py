@@ -207,3 +207,14 @@ def test_reference_to_a_site_and_a_frame_of_the_base(models: Path, tmp_path: Pat
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert mechanism.active
+
+
+def test_motors_of_the_overlay_replace_those_of_the_base_in_the_report_too(tmp_path: Path) -> None:
+    base = write(tmp_path, FIVE_BAR, "base.yaml")
+    for motors, used, ignored in (("", ["o1", "o5"], []), ("motors: [o2]\n", ["o2"], ["o1", "o5"])):
+        path = write(tmp_path, f"vincula: 1\nbase: {base.name}\n{motors}", "over.yaml")
+        mechanism, report = load_with_report(path)
+        fates = {fate: [e.name for e in report.entries if (e.kind, e.fate) == ("motor", fate)]
+                 for fate in ("used", "ignored")}  # fmt: skip
+        assert fates == {"used": used, "ignored": ignored}
+        assert list(mechanism.active) == used

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from vincula.errors import DuplicateNameError, FileError, ModelError, UnknownNameError
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.native_drawing import draw
-from vincula.files.native_names import (
-    joint_values,
-    with_couplings,
-    with_keyframes,
-    with_locks_and_motors,
-    with_reference,
-    with_weights,
-)
+from vincula.files.native_names import joint_values
 from vincula.files.native_notes import note_oddities, record_entries
+from vincula.files.native_rest import STEPS, tell_rest
 from vincula.files.parameters import Settings, declared, parameter_values
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
@@ -32,6 +27,9 @@ from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import Precision
 from vincula.spatial.space import Space, space_named
 from vincula.spatial.units import UNITS, Dimension
+
+if TYPE_CHECKING:
+    from vincula.files.schema_rest import Touched
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +83,8 @@ def read_native(
     context = Context(parameters, space.translations if space else None, limits)
     entry = validated(document, NativeFile, context)
     if entry is None or space is None:
+        if space is not None:
+            _tell_rest(document, context, space, Scale(units), base, limits)
         document.problems.refuse()
     mechanism = _Builder(document, entry, space, Scale(units), base, name, limits).mechanism()
     document.problems.refuse_if_any()
@@ -92,7 +92,7 @@ def read_native(
     record_entries(entry, report)
     note_oddities(entry, mechanism, base.mechanism if base else None, report)
     if base is not None:
-        report.extend(base.report)
+        report.extend(base.report, new_motors=entry.motors is not None)
     every = (*declared(document), *(base.parameters if base else ()))
     return Loaded(mechanism, report, tuple(dict.fromkeys(every)))
 
@@ -155,6 +155,17 @@ def _space(document: Document, base: Loaded | None) -> Space | None:
     return space if known or node is None else None
 
 
+def _tell_rest(
+    document: Document, context: Context, space: Space, scale: Scale, base: Loaded | None, limits: Limits
+) -> None:
+    """Add what is wrong with the parts of a file that fit the schema, where others do not."""
+    from vincula.files.schema_rest import rest_of
+
+    rest, touched = rest_of(document, context, space)
+    if rest is not None:
+        _Builder(document, rest, space, scale, base, "", limits, touched).mechanism()
+
+
 class _Builder:
     """Puts the parts together in the order in which they need each other."""
 
@@ -167,18 +178,23 @@ class _Builder:
         base: Loaded | None,
         name: str,
         limits: Limits,
+        touched: Touched | None = None,
     ) -> None:
         self._document, self._entry, self._space, self._scale = document, entry, space, scale
         self._base = base.mechanism if base else None
-        self._name, self._limits = entry.name or name, limits
+        self._name, self._limits, self._touched = entry.name or name, limits, touched
 
     def mechanism(self) -> Mechanism:
         """The mechanism, at the configuration of the file; check the problems of the document."""
         before, after = self._configuration_of_base()
-        sketch = draw(self._document, self._entry, self._space, self._scale, before, self._limits)
-        self._document.problems.refuse_if_any()
+        sketch = draw(
+            self._document, self._entry, self._space, self._scale, before, self._limits, self._touched
+        )
+        if self._document.problems:
+            tell_rest(sketch, _place_of)
+            self._document.problems.refuse()
         mechanism = self._whole(sketch)
-        for step in (with_couplings, with_locks_and_motors, with_reference, with_weights, with_keyframes):
+        for step in STEPS:
             mechanism = step(sketch, mechanism)
         return self._moved(sketch, mechanism, after)
 
@@ -191,9 +207,9 @@ class _Builder:
         here = {name: given.pop(name) for name in own}
         from vincula.mechanism.drawing import Drawing
 
-        sketch = Sketch(self._document, self._entry, Drawing(self._space, base), self._scale, base)
+        drawing = Drawing(self._space, base)
+        sketch = Sketch(self._document, self._entry, drawing, self._scale, base, touched=self._touched)
         values = joint_values(sketch, base, ["configuration"], here)
-        self._document.problems.refuse_if_any()
         return base.with_configuration(values.values), given
 
     def _whole(self, sketch: Sketch) -> Mechanism:
@@ -214,6 +230,7 @@ class _Builder:
             return Mechanism(space=self._space, **parts)  # type: ignore[arg-type]
         except ModelError as error:
             sketch.problem(_place_of(error, sketch), str(error))
+            tell_rest(sketch, _place_of)
             self._document.problems.refuse()
 
     def _moved(self, sketch: Sketch, mechanism: Mechanism, values: Mapping[str, object]) -> Mechanism:

@@ -86,6 +86,7 @@ def _fix_bodies(sketch: Sketch, waiting: dict[str, Location]) -> None:
         else:
             sketch.unknown([*location, "fixed_to"], "body", str(target), known)
         _declare(sketch, location, DrawnBody(name))
+    sketch.doubt(*waiting)
 
 
 def _declare(sketch: Sketch, location: Location, body: DrawnBody) -> None:

@@ -23,16 +23,23 @@ from vincula.spatial.space import PLANAR, Space
 
 if TYPE_CHECKING:
     from vincula.files.schema import NativeFile
+    from vincula.files.schema_rest import Touched
     from vincula.mechanism.mechanism import Mechanism
 
 
 def draw(
-    document: Document, entry: NativeFile, space: Space, scale: Scale, base: Mechanism | None, limits: Limits
+    document: Document,
+    entry: NativeFile,
+    space: Space,
+    scale: Scale,
+    base: Mechanism | None,
+    limits: Limits,
+    touched: Touched | None = None,
 ) -> Sketch:
     """Draw everything that has a place; what is wrong is in the problems of the document."""
-    sketch = Sketch(document, entry, Drawing(space, base), scale, base)
-    _refuse_too_many(sketch, limits)
-    document.problems.refuse_if_any()
+    sketch = Sketch(document, entry, Drawing(space, base), scale, base, touched=touched)
+    if _refuse_too_many(sketch, limits):
+        document.problems.refuse()
     _refuse_repeated_names(sketch)
     declare_bodies(sketch)
     _refuse_slips(sketch)
@@ -41,13 +48,14 @@ def draw(
     joints, contacts = _joints(sketch), _contacts(sketch)
     if not document.problems:
         sketch.drawing.add(joints=joints, contacts=contacts)
-        for index in range(len(entry.closures)):
-            _add_closure(sketch, index)
+    for index in range(len(entry.closures)):
+        _add_closure(sketch, index)
     return sketch
 
 
-def _refuse_too_many(sketch: Sketch, limits: Limits) -> None:
-    entry, base = sketch.entry, sketch.base
+def _refuse_too_many(sketch: Sketch, limits: Limits) -> bool:
+    """Refuse what passes the limits; whether there was any."""
+    entry, base, before = sketch.entry, sketch.base, len(sketch.document.problems)
     joints = len(entry.joints) + len(entry.closures) + (len(base.joints) if base else 0)
     if joints > limits.joints:
         sketch.problem(["joints"], f"got {joints} joints, expected at most {limits.joints}")
@@ -56,6 +64,7 @@ def _refuse_too_many(sketch: Sketch, limits: Limits) -> None:
     bodies = len(list(new_bodies(sketch))) + (len(base.bodies) if base else 0)
     if bodies > limits.bodies:
         sketch.problem(["bodies"], f"got {bodies} bodies, expected at most {limits.bodies}")
+    return len(sketch.document.problems) > before
 
 
 def _refuse_repeated_names(sketch: Sketch) -> None:
@@ -155,7 +164,8 @@ def _add_closure(sketch: Sketch, index: int) -> None:
     frames = {frame.name: frame for frame in sketch.drawing.frames}
     missing = [k for k, name in enumerate(entry.frames) if name not in frames]
     for k in missing:
-        sketch.unknown(["closures", index, "frames", k], "named frame", entry.frames[k], frames)
+        if entry.frames[k] not in sketch.entry.frames:  # else what is wrong with the frame is told there
+            sketch.unknown(["closures", index, "frames", k], "named frame", entry.frames[k], frames)
     if missing:
         return
     first, second = (frames[name] for name in entry.frames)

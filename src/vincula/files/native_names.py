@@ -11,11 +11,11 @@ from vincula.errors import ModelError, listing
 from vincula.files.joint_values import JointValues
 from vincula.files.native_parts import coupling, drive, numbers_of, position
 from vincula.files.problems import shown
-from vincula.files.schema import DriveEntry, NamedMotorEntry
+from vincula.files.schema import DriveEntry, NamedMotorEntry, ReferenceEntry
 from vincula.files.sketch import Sketch
 from vincula.files.tree import Location
 from vincula.files.units import Scale
-from vincula.files.weights import weights_of_entry
+from vincula.files.weights import weight_problems, weights_of_entry
 from vincula.mechanism.drawing import Reference
 from vincula.mechanism.motor_weights import weights_from_limits
 from vincula.mechanism.parts import GROUND, Coupling, Cut, Drive
@@ -124,6 +124,8 @@ def with_reference(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
     entry = sketch.entry.reference
     if entry is None:
         return mechanism
+    scale = Scale(sketch.scale.units)
+    cuts = _cuts(sketch, mechanism, entry, scale)
     if entry.body == GROUND or (entry.body == "world" and "world" not in mechanism.body):
         members = ", ".join(list(mechanism.body)[:12])
         sketch.problem(
@@ -133,7 +135,14 @@ def with_reference(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
     if entry.body not in mechanism.body:
         sketch.unknown(["reference", "body"], "body", entry.body, mechanism.body)
         return mechanism
-    scale = Scale(sketch.scale.units)
+    origin = None if entry.origin is None else position(entry.origin, scale)
+    drawn = Reference(entry.body, origin, entry.axes, cuts)
+    member = sketch.attempt(["reference"], partial(sketch.drawing.reference, drawn, mechanism))
+    return mechanism if member is None else replace(mechanism, reference=member)
+
+
+def _cuts(sketch: Sketch, mechanism: Mechanism, entry: ReferenceEntry, scale: Scale) -> dict[str, Cut]:
+    """How joints are cut; what cannot be used is told at its place."""
     cuts: dict[str, Cut] = {}
     for name, cut in entry.cuts.items():
         location: Location = ["reference", "cuts", name]
@@ -151,10 +160,7 @@ def with_reference(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
                 [*location, "at"], partial(sketch.drawing.point, position(cut.at, scale), "cut point")
             )
         cuts[name] = Cut(cut.kind, None if point is None else tuple(float(x) for x in point))
-    origin = None if entry.origin is None else position(entry.origin, scale)
-    drawn = Reference(entry.body, origin, entry.axes, cuts)
-    member = sketch.attempt(["reference"], partial(sketch.drawing.reference, drawn, mechanism))
-    return mechanism if member is None else replace(mechanism, reference=member)
+    return cuts
 
 
 def with_weights(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
@@ -164,6 +170,10 @@ def with_weights(sketch: Sketch, mechanism: Mechanism) -> Mechanism:
         return mechanism
     if isinstance(entry, str):
         weights = sketch.attempt(["weights"], partial(weights_from_limits, mechanism))
+    elif wrong := list(weight_problems(entry, mechanism)):
+        for key, message in wrong:
+            sketch.problem(["weights", key], message)
+        return mechanism
     else:
         weights = sketch.attempt(["weights"], partial(weights_of_entry, entry))
     return mechanism if weights is None else mechanism.with_weights(weights)

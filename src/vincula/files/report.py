@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from vincula.errors import listing
@@ -29,6 +29,14 @@ class Entry:
     name: str = ""
     detail: str = ""
     count: int = 1
+
+    @property
+    def is_motor(self) -> bool:
+        """Whether it was used as a motor, and as nothing else."""
+        named = self.kind in ("motor", "transmission")
+        return self.fate == "used" and (
+            named or (self.kind == "ros2_control joint" and self.detail.startswith("motor"))
+        )
 
 
 @dataclass
@@ -68,9 +76,18 @@ class LoadReport:
         if text not in self.notes:
             self.notes.append(text)
 
-    def extend(self, base: LoadReport) -> None:
-        """Put the report of a base file before this one's entries."""
-        self.entries[:0] = base.entries
+    def extend(self, base: LoadReport, *, new_motors: bool = False) -> None:
+        """Put the report of a base file before this one's entries.
+
+        Args:
+            base: The report.
+            new_motors: Whether this file names motors, which replace those of the base.
+        """
+        unused = "its motors are replaced by those of the overlay"
+        self.entries[:0] = [
+            replace(entry, fate="ignored", detail=unused) if new_motors and entry.is_motor else entry
+            for entry in base.entries
+        ]
         self.notes[:0] = [note for note in base.notes if note not in self.notes]
         self.snapped[:0] = base.snapped
 

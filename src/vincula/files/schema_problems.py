@@ -54,7 +54,7 @@ def _empty_values(node: Node, location: tuple[str | int, ...]) -> Iterator[tuple
 
 
 def _add(document: Document, model: type[BaseModel], detail: ErrorDetails) -> None:
-    location, in_key = _location(document, detail)
+    location, in_key = location_of(document, detail)
     kind, context, given = detail["type"], detail.get("ctx", {}), detail["input"]
     if isinstance(document.node(location), Leaf) and given is None:
         return  # reported as an empty value
@@ -108,8 +108,11 @@ def _entries(count: int) -> str:
     return "one entry" if count == 1 else f"{count} entries"
 
 
-def _location(document: Document, detail: ErrorDetails) -> tuple[tuple[str | int, ...], bool]:
-    """Keys and indices of an error, without pydantic's own words for members of unions and for keys."""
+def location_of(document: Document, detail: ErrorDetails) -> tuple[tuple[str | int, ...], bool]:
+    """Keys and indices of one of pydantic's errors, and whether it is about the key itself.
+
+    Pydantic's own words for members of unions and for keys are left out.
+    """
     steps: tuple[str | int, ...] = detail["loc"]
     in_key = bool(steps) and steps[-1] == "[key]"
     node: Node | None = document.root

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from vincula.errors import FileError, ModelError, UnknownNameError, WeightError
 from vincula.files.expressions import Measured
 from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.mechanism.motor_weights import refuse_misfit, weights_from_limits
 from vincula.spatial.units import quantity
 from vincula.weights import QUANTITIES, Weights
 
@@ -34,12 +36,10 @@ def read_weights(text: str, mechanism: Mechanism, limits: Limits = DEFAULT_LIMIT
         ModelError: A text that is no weight.
     """
     if text.strip() == LIMITS:
-        from vincula.mechanism.motor_weights import weights_from_limits
-
         return weights_from_limits(mechanism)
     if "=" in text and PurePath(text).suffix.lower() not in (".json", ".yaml", ".yml"):
         return _from_text(text)
-    return _from_file(text, limits)
+    return _from_file(text, mechanism, limits)
 
 
 def _from_text(text: str) -> Weights:
@@ -75,7 +75,7 @@ def _numbers(text: str, name: str) -> object:
     return numbers[0] if len(numbers) == 1 else numbers
 
 
-def _from_file(path: str, limits: Limits) -> Weights:
+def _from_file(path: str, mechanism: Mechanism, limits: Limits) -> Weights:
     from vincula.files.schema import WeightsEntry
     from vincula.files.schema_problems import validated
     from vincula.files.schema_values import Context
@@ -89,7 +89,10 @@ def _from_file(path: str, limits: Limits) -> Weights:
     document = read_tree(source, limits)
     entry = validated(document, WeightsEntry, Context(limits=limits))
     weights = None
-    if entry is not None:
+    wrong = list(weight_problems(entry, mechanism)) if entry is not None else []
+    for key, message in wrong:
+        document.problems.add(document.place([key]), message)
+    if entry is not None and not wrong:
         try:
             weights = weights_of_entry(entry)
         except ModelError as error:
@@ -98,6 +101,23 @@ def _from_file(path: str, limits: Limits) -> Weights:
         document.problems.refuse()
     document.problems.refuse_if_any()
     return weights
+
+
+def weight_problems(entry: WeightsEntry, mechanism: Mechanism) -> Iterator[tuple[str, str]]:
+    """What is wrong with each weight of a validated table, as its key and words.
+
+    Args:
+        entry: The table.
+        mechanism: Whose motors, twists and wrenches are weighed.
+    """
+    for key in QUANTITIES:
+        value = _values(getattr(entry, key))
+        if value is None:
+            continue
+        try:
+            refuse_misfit(Weights.from_mapping({key: value}), key, mechanism)
+        except ModelError as error:
+            yield key, str(error)
 
 
 def weights_of_entry(entry: WeightsEntry) -> Weights:

@@ -178,6 +178,10 @@ class _TreeBuilder:
             self._refuse(f"more than {limits.nodes} elements", line, column)
         if len(waiting) >= limits.depth:
             self._refuse(f"elements are nested more than {limits.depth} deep", line, column)
+        if len(tag) > limits.name_characters:
+            self._refuse(
+                f"an element has a name of more than {limits.name_characters} characters", line, column
+            )
         if attributes:
             self._check_attributes(attributes, line, column)
         parent = waiting[-1] if waiting else None
@@ -194,7 +198,7 @@ class _TreeBuilder:
             self._refuse(f"more than {self._limits.attributes} attributes at one element", line, column)
         most = self._limits.attribute_characters
         for name, value in attributes.items():
-            if len(value) > most:
+            if len(value) > most or len(name) > self._limits.name_characters:
                 self._refuse(f"attribute {shown(name)} has more than {most} characters", line, column)
 
     def _end(self, _tag: str) -> None:

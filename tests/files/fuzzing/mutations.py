@@ -166,7 +166,7 @@ def _value(elements: list[ElementTree.Element], chance: random.Random) -> str:
     ]
     value = chance.choice(chance.choice((NUMBERS, WORDS, values)))
     if chance.random() < 0.3:
-        numbers = chance.choice(values).split()
+        numbers = chance.choice(values).split() or [""]
         numbers[chance.randrange(len(numbers))] = chance.choice(NUMBERS)
         value = " ".join(numbers)
     return value

@@ -86,3 +86,23 @@ def test_weights_of_names_that_do_not_exist_are_refused() -> None:
     assert model.weights is not None
     with pytest.raises(UnknownNameError, match="o9"):
         model.weights.metric("rate", model)
+
+
+def test_a_motor_on_several_axes_has_the_limits_of_its_axes() -> None:
+    """Its rate is reached with every axis at its limit; its torque is that which takes a first one to its own."""
+    linkage = limited(o1=Limits(rate=2.0, effort=10.0), o5=Limits(rate=4.0, effort=5.0))
+    both = replace(linkage, drives=(vc.Drive("both", {"o1": 0.5, "o5": -2.0}),)).with_active(["both"])
+    weights = weights_from_limits(both)
+    assert isinstance(weights.rate, dict)
+    assert isinstance(weights.torque, dict)
+    rate, torque = weights.rate["both"] ** -0.5, weights.torque["both"] ** -0.5
+    corners = [0.5 * a - 2.0 * b for a in (-2.0, 2.0) for b in (-4.0, 4.0)]
+    assert rate == pytest.approx(max(corners))
+    assert np.abs(torque * np.array([0.5, -2.0])) / [10.0, 5.0] == pytest.approx([0.125, 1.0])
+
+
+def test_a_motor_on_several_axes_needs_limits_of_all_of_them() -> None:
+    linkage = limited(o1=Limits(rate=2.0), o5=Limits(effort=5.0))
+    both = replace(linkage, drives=(vc.Drive("both", {"o1": 0.5, "o5": -2.0}),)).with_active(["both", "o1"])
+    with pytest.raises(WeightError, match=r"no rate limit for both.*when all of them have one"):
+        weights_from_limits(both)
