@@ -1,4 +1,7 @@
-"""Closing one configuration after the other, each from its neighbour, through `Mechanism.close`."""
+"""Closing one configuration after the other, each from its neighbour, as `Mechanism.close` does.
+
+One start only is tried, so that the assembly branch is kept.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,10 @@ from vincula.errors import ClosureError, ModelError, NonFiniteError, VinculaErro
 from vincula.kernels.evaluation import FAILED, NO_CLOSURE
 from vincula.kernels.inputs import Batch
 from vincula.kernels.reference_path import Outcome
-from vincula.mechanism.closed import ClosedConfiguration
+from vincula.mechanism.closure import Found, closed_with
+from vincula.mechanism.closure_problem import ClosureProblem
 from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.holding import Holding, holding, problem_for
 from vincula.mechanism.mechanism import Mechanism
 from vincula.spatial.poses import Pose
 
@@ -29,8 +34,9 @@ class Chain:
     def __init__(self, batch: Batch) -> None:
         self._batch = batch
         self._last: Configuration | None = None
+        self._problem: ClosureProblem | None = None
 
-    def closed(self, mechanism: Mechanism, lane: int) -> ClosedConfiguration | Outcome:
+    def closed(self, mechanism: Mechanism, lane: int) -> Found | Outcome:
         """The closed configuration of the next lane, or why there is none; lanes come in order."""
         batch = self._batch
         if lane % max(batch.stretch, 1) == 0:
@@ -38,13 +44,22 @@ class Chain:
         if batch.values is None:
             return Outcome(FAILED, "nothing is given to close for")
         try:
-            found = closed_for(mechanism, batch.given, batch.values[lane], self._near(mechanism, lane))
+            held = held_for(mechanism, batch.given, batch.values[lane])
+            found = closed_with(
+                self._equations(mechanism, held), held, self._near(mechanism, lane), attempts=1
+            )
         except ClosureError as error:
             return Outcome(NO_CLOSURE, str(error))
         except VinculaError as error:
             return Outcome(FAILED, str(error))
-        self._last = found
+        self._last = found.values
         return found
+
+    def _equations(self, mechanism: Mechanism, held: Holding) -> ClosureProblem:
+        """The equations, made once a mechanism: what is held is the same in every lane."""
+        if self._problem is None or self._problem.mechanism is not mechanism:
+            self._problem = problem_for(mechanism, held)
+        return self._problem
 
     def _near(self, mechanism: Mechanism, lane: int) -> Configuration:
         batch = self._batch
@@ -55,11 +70,10 @@ class Chain:
         return mechanism.home if batch.first is None else mechanism.home.from_flat(batch.first)
 
 
-def closed_for(mechanism: Mechanism, given: str, values: Vector, near: Configuration) -> ClosedConfiguration:
-    """The configuration closed for motor values or a pose, from one start only: the branch is kept.
+def held_for(mechanism: Mechanism, given: str, values: Vector) -> Holding:
+    """What is held: motor values or a pose.
 
     Raises:
-        ClosureError: It does not close from there.
         NonFiniteError: NaN or infinity.
         ModelError: A quaternion of length zero.
     """
@@ -67,9 +81,8 @@ def closed_for(mechanism: Mechanism, given: str, values: Vector, near: Configura
     if len(bad):
         raise NonFiniteError(given, (int(bad[0]),), float(values[bad[0]]))
     if given == "motors":
-        motors = dict(zip(mechanism.active, map(float, values), strict=True))
-        return mechanism.close(near, motors=motors, attempts=1)
-    return mechanism.close(near, pose=pose_from(values), attempts=1)
+        return holding(mechanism, dict(zip(mechanism.active, map(float, values), strict=True)))
+    return holding(mechanism, None, pose_from(values))
 
 
 def pose_from(values: Vector) -> Pose:

@@ -69,4 +69,4 @@ def _one(
         return closed
     if "closure.iterations" in arrays:
         arrays["closure.iterations"][lane] = closed.iterations
-    return plan.reference.fill(mechanism, closed.flat, arrays, lane)
+    return plan.reference.fill(mechanism, closed.values.flat, arrays, lane)

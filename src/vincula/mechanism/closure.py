@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -53,28 +55,73 @@ def close(
 ) -> ClosedConfiguration:
     """A configuration that closes all loops, contacts and couplings; see `Mechanism.close`."""
     held = holding(mechanism, motors, pose)
-    problem = _problem(mechanism, held, limits)
+    found = closed_with(_problem(mechanism, held, limits), held, near, limits, attempts, seed)
+    how = Closing(mechanism, held, found.problem, found.solution, found.free, found.goal, found.start)
+    return ClosedConfiguration(found.values, how, found.iterations, found.attempts)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """A closed configuration with how it was found.
+
+    Attributes:
+        values: The configuration.
+        problem: The equations.
+        solution: Their solution.
+        free: For every rate, whether it was free to move.
+        goal: The state that the search started from.
+        start: The configuration that it started from.
+        iterations: Jacobians evaluated.
+        attempts: Starts tried.
+    """
+
+    values: Configuration
+    problem: ClosureProblem
+    solution: Solution
+    free: Mask
+    goal: Vector
+    start: Configuration
+    iterations: int
+    attempts: int
+
+
+def closed_with(
+    problem: ClosureProblem,
+    held: Holding,
+    near: MotorValues | None = None,
+    limits: bool = False,
+    attempts: int = 25,
+    seed: int = 0,
+) -> Found:
+    """As `close`, with equations made before: they depend on what is held, not on its values.
+
+    Raises:
+        ClosureError: No closed configuration was found.
+    """
+    mechanism = problem.mechanism
     q = start_values(mechanism, near, held)
     fixed = held_columns(problem, held)
     bounds = Limits(*problem.variables.limits(mechanism)) if limits else None
     origin = problem.start(mechanism.configuration(near))
     goal = asked(problem, problem.start(q), held)
-    conflicts = length_conflicts(mechanism, q, _held_joints(mechanism, held), held.pose, held.point)
-    starts = _starts(problem, origin, goal, ~fixed, bounds, 1 if conflicts else attempts, seed)
+    conflicts = partial(length_conflicts, mechanism, q, _held_joints(mechanism, held), held.pose, held.point)
+    known = conflicts() if attempts > 1 else ()
+    starts = _starts(problem, origin, goal, ~fixed, bounds, 1 if known else attempts, seed)
     best, iterations, tried = _first_closed(problem, starts, ~fixed, bounds)
     if not is_closed(problem, best):
         raise cannot_close(
             mechanism,
             problem.configuration(best.state, q),
             _missed(problem, best),
-            conflicts=conflicts,
+            conflicts=known or conflicts(),
             attempts=tried,
             hints=_hints(problem, best, held, fixed, bounds, q),
         )
-    best, more = approached(problem, best, goal, ~fixed & ~best.held_by_limit, bounds)
+    free = ~fixed & ~best.held_by_limit
+    best, more = approached(problem, best, goal, free, bounds)
+    free = ~fixed & ~best.held_by_limit
     values = problem.configuration(best.state, q)
-    found = Closing(mechanism, held, problem, best, ~fixed & ~best.held_by_limit, goal, q)
-    return ClosedConfiguration(values, found, iterations + more, tried)
+    return Found(values, problem, best, free, goal, q, iterations + more, tried)
 
 
 def _first_closed(
