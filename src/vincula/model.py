@@ -7,7 +7,7 @@ every analysis starts from one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -18,10 +18,13 @@ from numpy.typing import ArrayLike
 from vincula.arrays import Matrix, Vector, checked, frozen
 from vincula.errors import DuplicateNameError, ModelError, ShapeError, UnknownNameError
 from vincula.labels import BodyMotions, Column, Cut, Row, ScaledMatrices, Uncertainty, _All, power_of_two
+from vincula.numerics.evidence import NO_EVIDENCE, Evidence
 from vincula.spatial.space import PLANAR, SPATIAL, Space
 
 if TYPE_CHECKING:
-    from vincula.numerics.ledger import RankLedger
+    from vincula.numerics.evidence import NearestSingular
+    from vincula.numerics.exact_blocks import ExactBlocks
+    from vincula.numerics.ledger import MatrixName, RankLedger
     from vincula.weights import Weights
 
 
@@ -46,6 +49,9 @@ class LinearModel:
         notes: Facts that the reader of a result must know.
         weights: Weights declared with the model, None for the unit default.
         motions: Geometry for verdicts; None for bare matrices.
+        evidence: What is known about doubtful ranks beside the matrices.
+        exact: Gives the matrices exactly, for proofs; None where they are known as doubles only.
+        nearest: Finds the singular configuration nearest to this one, given the doubtful ranks.
     """
 
     jacobian_active: Matrix
@@ -64,6 +70,9 @@ class LinearModel:
     notes: tuple[str, ...] = ()
     weights: Weights | None = None
     motions: BodyMotions | None = None
+    evidence: Evidence = NO_EVIDENCE
+    exact: Callable[[LinearModel], ExactBlocks] | None = None
+    nearest: Callable[[tuple[MatrixName, ...]], NearestSingular | None] | None = None
 
     def __post_init__(self) -> None:
         m = len(self.rows)
@@ -135,6 +144,7 @@ class LinearModel:
             space={3: PLANAR, 6: SPATIAL}.get(d),
             length=length if length is None else power_of_two(length),
             mechanism=name,
+            exact=_exact_doubles,
         )
 
     @property
@@ -209,6 +219,13 @@ class LinearModel:
     def with_weights(self, weights: Weights | None) -> LinearModel:
         """The same model with other default weights."""
         return replace(self, weights=weights)
+
+
+def _exact_doubles(model: LinearModel) -> ExactBlocks:
+    """Bare matrices as given: every double is the binary fraction that it is."""
+    from vincula.numerics.exact_blocks import ExactBlocks
+
+    return ExactBlocks.of_doubles(model.jacobian_active, model.jacobian_passive, model.grasp.T)
 
 
 def _factors(linear: Sequence[bool], factor: float) -> Vector:

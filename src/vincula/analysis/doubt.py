@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import warnings
 
+from vincula.analysis.readings import reading_message, settled_messages
 from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
 from vincula.numerics.lapack import svd
@@ -23,10 +24,12 @@ def warn_of_doubt(model: LinearModel) -> None:
 
 
 def doubt_messages(model: LinearModel) -> list[str]:
-    """Every doubtful rank in words: why it is in doubt, and what follows either way."""
+    """Every doubtful rank in words, why and what follows either way; then readings and assumptions."""
     ledger = model.ledger
-    return [_said(model, name, ledger.decision(name)) for name in MATRIX_NAMES
+    said = [_said(model, name, ledger.decision(name)) for name in MATRIX_NAMES
             if ledger.decided(name) and ledger.decision(name).status == "doubtful"]  # fmt: skip
+    both = reading_message(model)
+    return [*said, *([both] if both else []), *settled_messages(model)]
 
 
 def warn_of_mixed_units(model: LinearModel, weights: Weights, task: Quantity) -> None:
@@ -69,9 +72,11 @@ _CAUSES = {
     "tolerance": "the manufacturing tolerance",
 }
 _REMEDIES = {
-    "rounding": "move away from this configuration, or give exact dimensions",
-    "closure": "close the loops more tightly",
-    "digits": "type more digits (pi/2 instead of 1.5708)",
+    "rounding": "move away from this configuration, or give exact dimensions and use --exact, or "
+    "--assume-singular",
+    "closure": "close the loops more tightly, or --assume-singular",
+    "digits": "type more digits (pi/2 instead of 1.5708), or take the numbers as typed by --exact, as what "
+    "they may mean by --snap, or --assume-singular",
     "tolerance": "the tolerance allows both: design for the worse one",
 }
 _CONSEQUENCES: dict[MatrixName, tuple[str, str]] = {

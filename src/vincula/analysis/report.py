@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vincula.analysis.diagnosis import contradictions
-from vincula.analysis.doubt import doubt_messages
+from vincula.analysis.doubt import doubt_messages, participation
 from vincula.analysis.ellipsoid import Ellipsoid
 from vincula.analysis.equilibrium import balances_every_wrench
+from vincula.analysis.readings import as_typed, nearest_words
 from vincula.analysis.recipes import motor_quantity, motor_units, task_quantity
 from vincula.analysis.wording import components
 from vincula.arrays import Vector
 from vincula.model import LinearModel
+from vincula.numerics.evidence import NearestSingular
+from vincula.numerics.ledger import MatrixName
 from vincula.numerics.metric import Metric
-from vincula.numerics.rank import RankDecision
 
 if TYPE_CHECKING:
     from vincula.analysis.maps import LinearMap
@@ -36,6 +38,7 @@ def as_object(analysis: Analysis) -> dict[str, Any]:
         "schema": SCHEMA,
         "mechanism": model.mechanism,
         "reference": model.reference,
+        "reference_point": None if model.motions is None else model.motions.origin.tolist(),
         "frame": model.frame,
         "active": [c.name for c in model.motors],
         "passive": [c.name for c in model.passives],
@@ -79,7 +82,7 @@ def as_object(analysis: Analysis) -> dict[str, Any]:
             "reasons": {name: found.reason for name, found in maps.items() if found.reason},
             "notes": {name: found.note for name, found in maps.items() if found.note},
         },
-        "rank": _rank(model),
+        "rank": _rank(analysis),
         "closure": {"residual": model.uncertainty.residual},
         "warnings": list(analysis.warnings),
         "notes": list(model.notes),
@@ -99,6 +102,8 @@ def as_text(analysis: Analysis) -> str:
     for ellipsoid in analysis.ellipsoids:
         lines += ["", f"{ellipsoid.kind} ({_per(ellipsoid)})", *_table(ellipsoid)]
     lines += ["", f"rank: {model.ledger.status}; closure residual {model.uncertainty.residual:.2g} m"]
+    if analysis.nearest_singular is not None:
+        lines.append(nearest_words(analysis.nearest_singular))
     lines += [f"note: {note}" for note in model.notes]
     lines += [f"warning: {message}" for message in analysis.warnings]
     return "\n".join(lines)
@@ -155,19 +160,55 @@ def _ellipsoid(ellipsoid: Ellipsoid) -> dict[str, Any]:
     }
 
 
-def _rank(model: LinearModel) -> dict[str, Any]:
-    ledger = model.ledger
+def _readings(model: LinearModel) -> dict[str, Any] | None:
+    """Summary counts of the numbers as typed, and of what they may mean."""
+    reading = model.evidence.reading
+    if reading is None:
+        return None
+    return {
+        "typed": as_typed(model).as_dict(),
+        "meant": None if reading.summary is None else reading.summary.as_dict(),
+        "numbers": list(reading.snapped),
+        "refused": reading.refused or None,
+    }
+
+
+def _nearest(found: NearestSingular | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "distance": found.distance,
+        "unit": "rad and m/L",
+        "largest": {"axis": found.largest[0], "moved": found.largest[1]},
+        "residual": found.residual,
+        "kantorovich": _number(found.kantorovich),
+        "configuration": {joint: list(values) for joint, values in found.configuration.items()},
+        "joints": dict(found.joints),
+    }
+
+
+def _rank(analysis: Analysis) -> dict[str, Any]:
+    model = analysis.model
+    ledger, known = model.ledger, model.evidence
     low, high = ledger.scenarios
     return {
         "status": ledger.status,
-        "decisions": [_decision(ledger.decision(name)) for name in ledger.names],
+        "basis": known.basis or None,
+        "assumed_singular": known.assume_singular,
+        "snapped": list(known.snapped),
+        "readings": _readings(model),
+        "nearest_singular": _nearest(analysis.nearest_singular),
+        "decisions": [_decision(model, name) for name in ledger.names],
         "scenarios": {"all_doubtful_zero": low.as_dict(), "none_zero": high.as_dict()},
         "contradictions": contradictions(model),
         "messages": doubt_messages(model),
     }
 
 
-def _decision(decision: RankDecision) -> dict[str, Any]:
+def _decision(model: LinearModel, name: MatrixName) -> dict[str, Any]:
+    decision = model.ledger.decision(name)
+    proved = decision.certificate
+    doubtful = decision.rank_min != decision.rank_max
     return {
         "matrix": decision.name,
         "shape": list(decision.shape),
@@ -180,6 +221,16 @@ def _decision(decision: RankDecision) -> dict[str, Any]:
         "deciding": decision.deciding,
         "gap": _number(decision.gap),
         "singular_values": [float(v) for v in decision.singular_values],
+        "kept": _number(decision.kept),
+        "dropped": decision.dropped,
+        "participation": dict(participation(model, name, decision)) if doubtful else None,
+        "certificate": None
+        if proved is None
+        else {
+            "rank": proved.rank,
+            "exact": proved.exact,
+            "enclosures": [list(bounds) for bounds in proved.singular_values],
+        },
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,8 @@ from vincula.analysis.mobility import MotionBlocks, motion_blocks
 from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights, task_quantity
 from vincula.errors import FileError, MixedUnitsWarning, RankAmbiguityWarning
 from vincula.model import LinearModel
-from vincula.numerics.ledger import RankLedger
+from vincula.numerics.evidence import NearestSingular
+from vincula.numerics.ledger import MatrixName, RankLedger
 from vincula.numerics.metric import Metric, identity_metric
 from vincula.weights import Quantity, Weights
 
@@ -100,6 +101,17 @@ class Analysis:
         return torque_from_wrench(self.model, self._definite("wrench"), self._definite("torque"))
 
     @cached_property
+    def nearest_singular(self) -> NearestSingular | None:
+        """The singular configuration nearest to a doubtful one, if the model comes from a mechanism."""
+        doubtful = tuple(name for name in self.ledger.names if self._open(name))
+        find = self.model.nearest
+        return None if find is None or not doubtful else find(doubtful)
+
+    def _open(self, name: MatrixName) -> bool:
+        decision = self.ledger.decision(name)
+        return decision.rank_min != decision.rank_max
+
+    @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Doubtful ranks and mixed units, in words."""
         return tuple(message for message, _ in self.classified_warnings)
@@ -152,6 +164,8 @@ def analyze(
     *,
     viewpoint: Viewpoint = "efficiency",
     convention: Convention = "invariant",
+    exact: bool = False,
+    assume_singular: bool = False,
 ) -> Analysis:
     """Everything the theory page says about a mechanism at one configuration.
 
@@ -160,15 +174,24 @@ def analyze(
         weights: The five weights; the model's own, else the identity in m, rad, N, N m.
         viewpoint: efficiency or accuracy.
         convention: printed gives the force numbers of the paper.
+        exact: Prove the ranks, from exact numbers where the model knows them, else from below.
+        assume_singular: Take doubtful singular values as zero; the result says so.
 
     Raises:
         WeightError: A weight that does not fit the model.
         ModelError: Unknown viewpoint or convention.
+        MissingExtraError: `exact` without python-flint.
 
     Warns:
         RankAmbiguityWarning: A rank is not decided.
         MixedUnitsWarning: Metres and radians are added with weights that nobody chose.
     """
+    if exact:
+        from vincula.analysis.certificates import certified
+
+        model = certified(model)
+    if assume_singular:
+        model = replace(model, evidence=replace(model.evidence, assume_singular=True))
     found = Analysis(model, resolved_weights(model, weights), viewpoint, convention)
     model.ledger.counts  # noqa: B018  all eight ranks: doubts are known from here on
     found.ellipsoids  # noqa: B018  refuses unfitting weights now, not at first use

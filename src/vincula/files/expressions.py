@@ -7,15 +7,16 @@ A small grammar with its own reader; nothing is ever given to Python to evaluate
     signed  = {"+" | "-"} atom
     atom    = number | "pi" | "$" name | function "(" sum ")" | "(" sum ")"
 
-Every value carries how far it may be off because of typed digits, to first order.
+Every value carries how far it may be off because of typed digits, to first order, and where it can the
+exact number that it stands for.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Final, NoReturn
 
 from vincula.errors import ModelError, listing
@@ -23,6 +24,7 @@ from vincula.files.digits import half_unit
 from vincula.files.meant import angle_doubt
 from vincula.files.problems import shown, suggestion
 from vincula.files.tree import number
+from vincula.numerics.surds import PI, QUARTER, NotExactError, WithPi, exactly
 
 _LONGEST: Final = 1000
 _DEEPEST: Final = 64
@@ -42,11 +44,28 @@ class Measured:
         value: The number.
         half_unit: Half a unit of its last typed digit, carried through expressions; 0 when exact.
         angular_half_unit: The same of a plain number that is an angle or a component of a direction.
+        exact: The number that an expression stands for; None where it is not known exactly.
+        computed: Whether it is the value of an expression, not a number as it was typed.
     """
 
     value: float
     half_unit: float = 0.0
     angular_half_unit: float = 0.0
+    exact: WithPi | None = field(default=None, compare=False)
+    computed: bool = field(default=False, compare=False)
+
+
+def exact_number(measured: Measured) -> WithPi:
+    """The number that a typed number or an expression stands for.
+
+    Raises:
+        NotExactError: It is not known exactly.
+    """
+    if not measured.computed:
+        return WithPi(exactly(measured.value))
+    if measured.exact is None:
+        raise NotExactError("an expression without an exact value")
+    return measured.exact
 
 
 class ExpressionError(ModelError):
@@ -123,7 +142,8 @@ class _Reader:
             sign = 1.0 if self._symbol == "+" else -1.0
             self._advance()
             right = self._product()
-            left = Measured(left.value + sign * right.value, left.half_unit + right.half_unit)
+            exact = _exactly(lambda a, b, s=sign: a + (b if s > 0.0 else -b), left, right)
+            left = _computed(left.value + sign * right.value, left.half_unit + right.half_unit, exact)
         return left
 
     def _product(self) -> Measured:
@@ -134,12 +154,13 @@ class _Reader:
             right = self._signed()
             if operator == "*":
                 off = abs(left.value) * right.half_unit + abs(right.value) * left.half_unit
-                left = Measured(left.value * right.value, off)
+                left = _computed(left.value * right.value, off, _exactly(lambda a, b: a * b, left, right))
                 continue
             if right.value == 0.0:
                 raise ExpressionError(self._text, "division by zero", start)
             quotient = left.value / right.value
-            left = Measured(quotient, (left.half_unit + abs(quotient) * right.half_unit) / abs(right.value))
+            off = (left.half_unit + abs(quotient) * right.half_unit) / abs(right.value)
+            left = _computed(quotient, off, _exactly(lambda a, b: a / b, left, right))
         return left
 
     def _signed(self) -> Measured:
@@ -148,7 +169,8 @@ class _Reader:
             sign = -sign if self._symbol == "-" else sign
             self._advance()
         atom = self._atom()
-        return Measured(sign * atom.value, atom.half_unit)
+        exact = _exactly(lambda a: a if sign > 0.0 else -a, atom)
+        return _computed(sign * atom.value, atom.half_unit, exact)
 
     def _atom(self) -> Measured:
         kind, symbol = self._kind, self._symbol
@@ -174,7 +196,7 @@ class _Reader:
     def _word(self, word: str) -> Measured:
         if word == "pi":
             self._advance()
-            return Measured(math.pi)
+            return _computed(math.pi, 0.0, PI)
         if word not in FUNCTIONS:
             dollar = f"; a parameter is written ${word}" if word in self._parameters else ""
             self._refuse(f"{shown(word)} is not known: {listing(('pi', *FUNCTIONS))}{dollar}")
@@ -188,15 +210,19 @@ class _Reader:
             if x < 0.0:
                 raise ExpressionError(self._text, f"square root of {x:g}", start)
             root = math.sqrt(x)
-            return Measured(root, off / (2.0 * root) if root > 0.0 else math.sqrt(off))
+            exact = _exactly(lambda a: WithPi(a.number.root()), argument)
+            return _computed(root, off / (2.0 * root) if root > 0.0 else math.sqrt(off), exact)
         if not math.isfinite(x):
             raise ExpressionError(self._text, "its value is too large", start)
         off = max(off, angle_doubt(repr(x)))
         if word == "sin":
-            return Measured(math.sin(x), abs(math.cos(x)) * off)
+            exact = _exactly(lambda a: WithPi((QUARTER + -a).cosine), argument)
+            return _computed(math.sin(x), abs(math.cos(x)) * off, exact)
         if word == "cos":
-            return Measured(math.cos(x), abs(math.sin(x)) * off)
-        return Measured(math.tan(x), (1.0 + math.tan(x) ** 2) * off)
+            exact = _exactly(lambda a: WithPi(a.cosine), argument)
+            return _computed(math.cos(x), abs(math.sin(x)) * off, exact)
+        exact = _exactly(lambda a: WithPi((QUARTER + -a).cosine) / WithPi(a.cosine), argument)
+        return _computed(math.tan(x), (1.0 + math.tan(x) ** 2) * off, exact)
 
     def _parenthesis(self) -> Measured:
         self._depth += 1
@@ -212,3 +238,15 @@ class _Reader:
 
     def _refuse(self, reason: str) -> NoReturn:
         raise ExpressionError(self._text, reason, self._start)
+
+
+def _computed(value: float, half_unit: float, exact: WithPi | None) -> Measured:
+    return Measured(value, half_unit, 0.0, exact, computed=True)
+
+
+def _exactly(operation: Callable[..., WithPi], *operands: Measured) -> WithPi | None:
+    """The result of an operation on exact numbers; None where it is not exact."""
+    try:
+        return operation(*(exact_number(operand) for operand in operands))
+    except (NotExactError, ZeroDivisionError):
+        return None

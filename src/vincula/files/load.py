@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from vincula.errors import FileError, UnknownNameError, listing
 from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.packages import Packages
 from vincula.files.problems import shown
 from vincula.files.source import Source, open_source
 
@@ -35,6 +36,7 @@ def load(
     beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
     snap: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
 ) -> Mechanism:
     """The mechanism of a file or an example.
 
@@ -46,6 +48,8 @@ def load(
         limits: How much a file may hold.
         snap: Read numbers of the file as what they probably mean (1.57 as pi/2); the notes of the
             mechanism list every number that was read so.
+        package_dirs: Folders of packages, or packages: where `package://` and `$(find NAME)` lead,
+            before ROS_PACKAGE_PATH and AMENT_PREFIX_PATH, and where MJCF files may be included from.
 
     Raises:
         FileError: The file cannot be read; every independent problem with file, line and column.
@@ -53,7 +57,9 @@ def load(
         ModelError: A parameter that is no number.
         MissingExtraError: MJCF without MuJoCo.
     """
-    return load_with_report(path, parameters, beside=beside, limits=limits, snap=snap)[0]
+    return load_with_report(
+        path, parameters, beside=beside, limits=limits, snap=snap, package_dirs=package_dirs
+    )[0]
 
 
 def load_with_report(
@@ -63,6 +69,7 @@ def load_with_report(
     beside: Sequence[str | os.PathLike[str]] = (),
     limits: Limits = DEFAULT_LIMITS,
     snap: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
 ) -> tuple[Mechanism, LoadReport]:
     """As `load`, with the report of everything used, ignored and repaired."""
     file, settings = os.fspath(path), dict(parameters or {})
@@ -73,7 +80,7 @@ def load_with_report(
     from vincula.files.snapping import Snapping, snapped_words
 
     snapping = Snapping() if snap else None
-    loader = _Loader(settings, limits, beside, snapping)
+    loader = _Loader(settings, limits, beside, snapping, package_dirs)
     loaded = loader.load(file)
     if beside and not loader.beside_was_read:
         raise FileError(_NO_SIDE_FILES.format(loaded.report.file))
@@ -88,9 +95,23 @@ def load_with_report(
     return loaded.mechanism, loaded.report
 
 
+def declared_parameters(path: str | os.PathLike[str], *, limits: Limits = DEFAULT_LIMITS) -> tuple[str, ...]:
+    """Names of the parameters that a file, or an example, declares.
+
+    Raises:
+        FileError: The file cannot be read.
+        UnknownNameError: No such example.
+    """
+    file = os.fspath(path)
+    if file.startswith(EXAMPLE):
+        from vincula.mechanism.catalog.registry import entry
+
+        return tuple(parameter.name for parameter in entry(file[len(EXAMPLE) :].strip()).parameters)
+    return _Loader({}, limits).load(file).parameters
+
+
 def _example(file: str, settings: Mapping[str, float | str]) -> tuple[Mechanism, LoadReport]:
     from vincula.files.report import LoadReport
-    from vincula.files.snapping import Snapping
     from vincula.mechanism.catalog.registry import example
 
     mechanism = example(file[len(EXAMPLE) :].strip(), **settings)
@@ -118,9 +139,12 @@ class _Loader:
         limits: Limits,
         beside: Sequence[str | os.PathLike[str]] = (),
         snapping: Snapping | None = None,
+        package_dirs: Sequence[str | os.PathLike[str]] = (),
     ) -> None:
         self._settings, self._limits, self._beside = settings, limits, beside
         self._snapping = snapping
+        self._roots = [Path(folder) for folder in package_dirs]
+        self._packages = Packages.of(package_dirs)
         self.beside_was_read = False
         self._above: list[Path] = []
 
@@ -169,22 +193,37 @@ class _Loader:
 
     def _xml(self, source: Source) -> Loaded:
         from vincula.files.native import Loaded
+
+        arguments: tuple[str, ...] = ()
+        if is_xacro(source):
+            from vincula.files.xacro import EXPANDED, expand
+
+            source, arguments = expand(source, self._settings, self._limits, self._packages)
+            loaded = self._robot(source)
+            loaded.report.note(f"{EXPANDED}: lines in messages are those of what it expands to")
+        else:
+            loaded = self._robot(source)
+        return Loaded(loaded.mechanism, loaded.report, (*loaded.parameters, *arguments))
+
+    def _robot(self, source: Source) -> Loaded:
+        from vincula.files.native import Loaded
         from vincula.files.xmltree import parse_xml
 
         root = xml_root(source)
         if root in ("mujoco", "mujocoinclude"):
             from vincula.files.mjcf import load_mjcf
 
-            return Loaded(*load_mjcf(source, self._limits, snapping=self._snapping))
+            return Loaded(*load_mjcf(source, self._limits, roots=self._roots, snapping=self._snapping))
         if root == "robot":
             from vincula.files.urdf import load_urdf
 
             self.beside_was_read = True
-            return Loaded(*load_urdf(source, self._limits, beside=self._beside, snapping=self._snapping))
+            options = {"snapping": self._snapping, "packages": self._packages}
+            return Loaded(*load_urdf(source, self._limits, beside=self._beside, **options))
         if root == "sdf":
             from vincula.files.sdf import load_sdf
 
-            return Loaded(*load_sdf(source, self._limits, snapping=self._snapping))
+            return Loaded(*load_sdf(source, self._limits, snapping=self._snapping, packages=self._packages))
         if not root:
             parse_xml(source, self._limits)  # refuses document types, broken XML and files without elements
         raise FileError(f"{source.file}: {_other_xml(root)}; files that can be read: {listing(FORMATS)}")
@@ -200,25 +239,35 @@ _OTHER_XML: Final = {
 }
 
 
+def is_xacro(source: Source) -> bool:
+    """Whether an XML file is a xacro that has to be expanded: it is of the namespace, and uses it."""
+    root = _first_element(source.text)
+    if root is None:
+        return False
+    uses = "<xacro:" in source.text or "${" in source.text or "$(" in source.text
+    return root[1].startswith("xacro:") or ("xacro" in root[2] and uses)
+
+
 def xml_root(source: Source) -> str:
     """Tag of the first element of an XML file; empty when there is none.
 
     Raises:
-        FileError: The file is a xacro or an ERB template that has not been expanded.
+        FileError: The file is an ERB template that has not been expanded.
     """
     if source.text.lstrip().startswith("<%") or source.file.endswith(".erb"):
         raise FileError(f"{source.file}: got a template (ERB); expand it first: erb -T 1 FILE > model.sdf")
-    at = 0
-    while (match := _PROLOGUE.match(source.text, at)) is not None:
-        at = match.end()
-    root = _ROOT.match(source.text, at)
+    root = _first_element(source.text)
     if root is None:
         # Whatever this is, the XML reader says best what is wrong with it.
         return "mujoco" if "<mujoco" in source.text else ""
-    unexpanded = "xacro" in root[2] and ("<xacro:" in source.text or "${" in source.text)
-    if unexpanded or root[1].startswith("xacro:"):
-        raise FileError(f"{source.file}: got an unexpanded xacro; expand it first: xacro FILE > robot.urdf")
     return root[1]
+
+
+def _first_element(text: str) -> re.Match[str] | None:
+    at = 0
+    while (match := _PROLOGUE.match(text, at)) is not None:
+        at = match.end()
+    return _ROOT.match(text, at)
 
 
 def _other_xml(root: str) -> str:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from vincula.files.expressions import Measured
+from vincula.files.expressions import Measured, exact_number
 from vincula.files.meant import direction_doubt
 from vincula.mechanism.parts import Precision
+from vincula.numerics.surds import ExactFloat, NotExactError, Surd
 from vincula.spatial.units import UNITS
 
 if TYPE_CHECKING:
@@ -48,6 +49,11 @@ class Units:
         return self.metres(value) if linear else self.radians(value)
 
     @property
+    def exact_metre(self) -> Surd:
+        """One unit of length in metres, exactly."""
+        return Surd.decimal({"m": "1", "mm": "1e-3", "cm": "1e-2", "in": "0.0254"}[self.length])
+
+    @property
     def is_si(self) -> bool:
         """Whether nothing needs converting."""
         return self.length == "m" and self.angle == "rad"
@@ -67,7 +73,7 @@ class Scale:
     def length(self, number: Measured) -> float:
         """A length in metres."""
         self._length = max(self._length, self.units.metres(number.half_unit))
-        return self.units.metres(number.value)
+        return _known(number, self.units.metres(number.value), self.units.exact_metre)
 
     def point(self, numbers: Sequence[Measured]) -> tuple[float, ...]:
         """A position in metres."""
@@ -75,7 +81,7 @@ class Scale:
 
     def direction(self, numbers: Sequence[Measured]) -> tuple[float, ...]:
         """A direction as it is; its digits count as an angle."""
-        values = tuple(number.value for number in numbers)
+        values = tuple(_known(number, number.value, Surd.of(1)) for number in numbers)
         size = math.hypot(*values)
         if size > 0.0:
             off = max(max(number.half_unit, number.angular_half_unit) for number in numbers)
@@ -100,3 +106,13 @@ class Scale:
             tolerance_length=base.tolerance_length,
             tolerance_angle=base.tolerance_angle,
         )
+
+
+def _known(number: Measured, value: float, unit: Surd) -> float:
+    """A converted value that knows which number it stands for, where its digits do not say it."""
+    if not number.computed and value == number.value:
+        return value
+    try:
+        return ExactFloat(value, exact_number(number).number * unit)
+    except NotExactError:
+        return ExactFloat(value, None)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from vincula.mechanism.parts import (
     Limits,
     ReferenceMember,
 )
+from vincula.mechanism.written import Written
 from vincula.spatial.poses import Pose, frame_with_z
 from vincula.spatial.selectors import contact_components
 from vincula.spatial.space import PLANAR, Space
@@ -121,6 +122,10 @@ class Reference:
     origin: Place | None = None
     axes: Literal["ground", "body"] = "ground"
     cuts: Mapping[str, Cut] = field(default_factory=dict)
+
+
+_ANYWHERE: Final = ("prismatic", "fixed", "free")
+"""Joint types whose constraints do not depend on where the joint is."""
 
 
 class Drawing:
@@ -246,7 +251,7 @@ class Drawing:
         kind = joint_type(drawn.type, self.space)
         what = f"joint {drawn.name!r}"
         at = np.zeros(self.space.translations)
-        if drawn.at is not None or drawn.type not in ("prismatic", "fixed", "free"):
+        if drawn.at is not None or drawn.type not in _ANYWHERE:
             at = self.point(_given(drawn.at, what, "at"), f"{what}: at")
         rotation = np.eye(self.space.translations)
         second_axis = np.array([1.0, 0.0, 0.0])
@@ -276,6 +281,7 @@ class Drawing:
             lead=drawn.lead,
             second_axis=second_axis,
             limits=drawn.limits,
+            written=Written(None if drawn.type in _ANYWHERE else drawn.at, (drawn.axis, drawn.second_axis)),
         )
 
     def contact(self, drawn: Contact) -> ContactPart:
@@ -297,6 +303,7 @@ class Drawing:
             self._on_body(first, pose),
             self._on_body(second, pose),
             drawn.friction,
+            Written(drawn.at, (drawn.normal, drawn.line)),
         )
 
     def _line(self, drawn: Contact, normal: Vector, what: str) -> Vector | None:

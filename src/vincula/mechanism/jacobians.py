@@ -8,6 +8,7 @@ direction once, as a row on such twists.  Their products, with the layout's sign
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from vincula.errors import ClosureError, MissingReferenceError
 from vincula.labels import BodyMotions, Uncertainty
 from vincula.mechanism.blocked import common_normal
 from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.exact import exact_blocks
 from vincula.mechanism.frames import PlacedFrames
 from vincula.mechanism.kinematics import body_poses, reference_position
 from vincula.mechanism.layout import Layout, RowArrays, ScrewArrays
@@ -27,6 +29,8 @@ from vincula.spatial.twists import block_rotation
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
+    from vincula.numerics.evidence import NearestSingular
+    from vincula.numerics.ledger import MatrixName
 
 
 def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
@@ -79,7 +83,18 @@ def linearize(mechanism: Mechanism, q: Configuration) -> LinearModel:
             carried=layout.group_carried,
             origin=frozen(np.array(origin)),
         ),
+        exact=partial(exact_blocks, mechanism, q),
+        nearest=partial(_nearest, mechanism, q),
     )
+
+
+def _nearest(
+    mechanism: Mechanism, q: Configuration, doubtful: tuple[MatrixName, ...]
+) -> NearestSingular | None:
+    """The singular configuration near a doubtful one; imported where it is used."""
+    from vincula.mechanism.nearest import nearest_singular
+
+    return nearest_singular(mechanism, q, doubtful)
 
 
 def _closed(mechanism: Mechanism, q: Configuration, frames: PlacedFrames) -> float:

@@ -17,6 +17,7 @@ from vincula.arrays import Vector, checked, frozen
 from vincula.errors import ModelError
 from vincula.labels import ALL as ALL  # noqa: PLC0414  part of this module's names
 from vincula.labels import _All as _All  # noqa: PLC0414
+from vincula.mechanism.written import Written
 from vincula.spatial.poses import Pose
 
 GROUND: Final = "ground"
@@ -119,6 +120,7 @@ class Joint:
         closure: True for a loop joint known only by its two frames: it has no configuration value.
         cut: How the joint is cut when the reduction must cut it; None for the default (kept, except
             closures of MJCF that stand for rows only).
+        written: Where it was drawn, exactly; None where that is not known.
     """
 
     name: str
@@ -133,6 +135,7 @@ class Joint:
     limits: tuple[Limits, ...] = ()
     closure: bool = False
     cut: Literal["kept", "contact"] | None = None
+    written: Written | None = None
 
     def __post_init__(self) -> None:
         what = f"joint {self.name!r}"
@@ -158,6 +161,7 @@ class ContactPart:
         frame_on_first: Contact frame in the first body's frame.
         frame_on_second: Contact frame in the second body's frame.
         friction: Coefficient of friction, None when the file gives none.
+        written: Where it was drawn, exactly; None where that is not known.
     """
 
     name: str
@@ -167,6 +171,7 @@ class ContactPart:
     frame_on_first: Pose
     frame_on_second: Pose
     friction: float | None = None
+    written: Written | None = None
 
     def __post_init__(self) -> None:
         what = f"contact {self.name!r}"

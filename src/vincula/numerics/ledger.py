@@ -16,8 +16,9 @@ import numpy as np
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.numerics.counts import Ranks, SummaryCounts, TwelveCounts
 from vincula.numerics.elimination import Elimination
+from vincula.numerics.evidence import NO_EVIDENCE, Evidence
 from vincula.numerics.lapack import singular_values
-from vincula.numerics.rank import SAFETY, RankDecision, Status, decide_rank, rounding_unit
+from vincula.numerics.rank import SAFETY, RankDecision, Status, decide_rank, resolved, rounding_unit
 from vincula.numerics.subspaces import Subspaces
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ class RankLedger:
         digits: Half a unit of the last typed digit in scaled units.
         tolerance: Manufacturing tolerance in scaled units.
         curvature: Bound K on the second derivatives of the loop equations in scaled units.
+        evidence: Readings, assumptions and proofs beside the matrices.
     """
 
     scaled: ScaledMatrices
@@ -49,6 +51,7 @@ class RankLedger:
     digits: float = 0.0
     tolerance: float = 0.0
     curvature: float = 1.0
+    evidence: Evidence = NO_EVIDENCE
     _decisions: dict[str, RankDecision] = field(default_factory=dict, repr=False)
     _ranks: dict[str, int] = field(default_factory=dict, repr=False)
     _bounds: dict[str, float] = field(default_factory=dict, repr=False)
@@ -65,6 +68,7 @@ class RankLedger:
             digits=known.digits_length / size + known.digits_angle,
             tolerance=known.tolerance_length / size + known.tolerance_angle,
             curvature=known.curvature,
+            evidence=model.evidence,
         )
 
     def matrix(self, name: MatrixName) -> Matrix:
@@ -82,12 +86,16 @@ class RankLedger:
         if name not in self._decisions:
             matrix = self.matrix(name)
             values = self._values_of_all if name == "all" else singular_values(matrix)
-            self._decisions[name] = decide_rank(
+            decision = decide_rank(
                 matrix,
                 name=_WORDS[name],
                 scale=self.scale,
                 uncertainty=self._uncertainty(matrix, values),
                 values=values,
+            )
+            known = self.evidence
+            self._decisions[name] = resolved(
+                decision, known.certificates.get(name), assume_singular=known.assume_singular
             )
         return self._decisions[name]
 
@@ -107,13 +115,16 @@ class RankLedger:
         be the same, and certain.
         """
         if name not in self._ranks:
-            if name not in self._decisions and self._proved_full(name):
+            if not self._needs_values(name) and self._proved_full(name):
                 n_a, n_p, n_o = self._widths
                 width = {"passive": 0, "active+passive": n_a, "passive+member": n_o, "all": n_a + n_o}[name]
                 self._ranks[name] = min(self._rows, n_p + width)
             else:
                 self._ranks[name] = self.decision(name).rank
         return self._ranks[name]
+
+    def _needs_values(self, name: MatrixName) -> bool:
+        return name in self._decisions or name in self.evidence.certificates
 
     @cached_property
     def scale(self) -> float:
@@ -181,8 +192,26 @@ class RankLedger:
 
     @property
     def status(self) -> Status:
-        """Doubtful when any decision made so far is."""
-        return "doubtful" if self.doubtful else "certain"
+        """Doubtful when any decision made so far is, or when another reading of the file has other counts."""
+        if self.doubtful or self.contested:
+            return "doubtful"
+        found = {decision.status for decision in self._decisions.values()}
+        if "assumed" in found:
+            return "assumed"
+        if not self.evidence.certificates or "certain" in found:
+            return "certain"
+        return "certified_lower" if "certified_lower" in found else "exact"
+
+    @cached_property
+    def contested(self) -> bool:
+        """Whether typed numbers, read as what they probably mean, give other counts than these.
+
+        Proofs and assumptions settle that: whoever asked for them has chosen the reading.
+        """
+        known = self.evidence
+        if known.reading is None or known.assume_singular or known.certificates:
+            return False
+        return known.reading.summary not in (None, self.summary)
 
     @cached_property
     def _member(self) -> Matrix:

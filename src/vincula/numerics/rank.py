@@ -8,7 +8,7 @@ within the margins it is *doubtful*, and says which of these causes decides.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ from vincula.arrays import Matrix, Vector
 from vincula.numerics.lapack import singular_values
 
 if TYPE_CHECKING:
-    pass
+    from vincula.numerics.evidence import Certificate
 
 EPS = float(np.finfo(float).eps)
 ROUNDING_FACTOR = 10.0
@@ -27,7 +27,10 @@ SAFETY = 10.0
 below rounding certainly is.  (The band below rounding matters: a Stewart platform 1e-12 rad off its
 singularity has true singular values of 5e-14, above actual but below worst-case rounding.)"""
 
-Status = Literal["certain", "doubtful"]
+Status = Literal["certain", "doubtful", "assumed", "exact", "certified_lower"]
+"""certain and doubtful: by the margins.  assumed: doubtful singular values were taken as zero on request.
+exact: proved.  certified_lower: proved that it is not lower, and by the margins not higher."""
+Proof = Literal["", "assumed", "exact", "certified_lower"]
 _NO_PARTS: Mapping[str, float] = {}
 
 
@@ -44,6 +47,8 @@ class RankDecision:
         singular_values: All of them, largest first (scaled units).
         cutoff: The uncertainty Delta, same units.
         cutoffs: Its parts: rounding, and closure, digits, tolerance where they are not zero.
+        proof: What the rank rests on beside the margins.
+        certificate: What is proved about it.
     """
 
     name: str
@@ -54,11 +59,17 @@ class RankDecision:
     singular_values: Vector
     cutoff: float
     cutoffs: Mapping[str, float]
+    proof: Proof = ""
+    certificate: Certificate | None = None
 
     @property
     def status(self) -> Status:
-        """`certain` when nothing within the margins changes the rank, else `doubtful`."""
-        return "certain" if self.rank_min == self.rank_max else "doubtful"
+        """`doubtful` when something within the margins changes the rank, else what the rank rests on."""
+        if self.proof in ("assumed", "exact"):
+            return self.proof
+        if self.rank_min != self.rank_max:
+            return "doubtful"
+        return self.proof or "certain"
 
     @property
     def deciding(self) -> str:
@@ -124,6 +135,38 @@ def decide_rank(
         cutoff=cutoff,
         cutoffs=parts,
     )
+
+
+def resolved(
+    decision: RankDecision, certificate: Certificate | None, *, assume_singular: bool = False
+) -> RankDecision:
+    """A decision with what is proved, and then what is assumed, put in.
+
+    Args:
+        decision: The decision by the margins.
+        certificate: What is proved about the rank.
+        assume_singular: Take singular values that are still doubtful as zero.
+    """
+    if certificate is not None:
+        proved = certificate.rank
+        if certificate.exact:
+            return replace(
+                decision,
+                rank=proved,
+                rank_min=proved,
+                rank_max=proved,
+                proof="exact",
+                certificate=certificate,
+            )
+        low, high = max(decision.rank_min, proved), max(decision.rank_max, proved)
+        rank = max(decision.rank, proved)
+        decision = replace(
+            decision, rank=rank, rank_min=low, rank_max=high, certificate=certificate,
+            proof="certified_lower" if rank == proved else "",
+        )  # fmt: skip
+    if assume_singular and decision.status == "doubtful":
+        return replace(decision, rank=decision.rank_min, proof="assumed")
+    return decision
 
 
 def rounding_unit(rows: int, columns: int) -> float:

@@ -135,7 +135,7 @@ def test_doubt_is_said_in_words_with_both_consequences() -> None:
         "If 1: passive joints can move with motors and member at rest (shares: crank 0.50, rod 0.50)" in text
     )
     assert "If 2: they cannot" in text
-    assert "To decide: close the loops more tightly." in text
+    assert "To decide: close the loops more tightly, or --assume-singular." in text
     assert result.ledger.status == "doubtful"
     assert text in result.warnings
     report = result.to_dict()["rank"]
