@@ -52,6 +52,8 @@ if TYPE_CHECKING:
     from vincula.kernels.compiled import CompiledMechanism
     from vincula.kernels.compiled import compile_mechanism as compile  # noqa: A004
     from vincula.kernels.evaluation import Evaluation
+    from vincula.maps.singularity_map import SingularityMap, map_over
+    from vincula.maps.variables import Variable
     from vincula.mechanism.branches import Branch
     from vincula.mechanism.closed import ClosedConfiguration
     from vincula.mechanism.configuration import Configuration
@@ -74,6 +76,12 @@ if TYPE_CHECKING:
     from vincula.mechanism.singularities import Singularity
     from vincula.model import LinearModel
     from vincula.spatial.poses import Pose
+    from vincula.sweep.dataset import SweepData, open_sweep
+    from vincula.sweep.merging import merge_shards
+    from vincula.sweep.points import Grid, PointTable, Polyline
+    from vincula.sweep.scattered import LowDiscrepancyPoints, RandomPoints
+    from vincula.sweep.sweep import Sweep
+    from vincula.view.map_figure import plot_map
     from vincula.view.plot import plot_comparison, plot_mechanism, save_figure
     from vincula.weights import Weights, characteristic_length_weights
 
@@ -98,9 +106,11 @@ __all__ = [
     "FileError",
     "Fixed",
     "Free",
+    "Grid",
     "In",
     "Limits",
     "LinearModel",
+    "LowDiscrepancyPoints",
     "Mechanism",
     "MissingExtraError",
     "MissingReferenceError",
@@ -111,20 +121,27 @@ __all__ = [
     "Path",
     "PathEvent",
     "PlanarJoint",
+    "PointTable",
+    "Polyline",
     "Pose",
     "Prismatic",
+    "RandomPoints",
     "RankAmbiguityWarning",
     "Reference",
     "Revolute",
     "Screw",
     "ShapeError",
     "Singularity",
+    "SingularityMap",
     "Spherical",
+    "Sweep",
+    "SweepData",
     "SweepError",
     "TopologyError",
     "Universal",
     "UnknownNameError",
     "UnsupportedFeatureError",
+    "Variable",
     "VinculaError",
     "WeightError",
     "Weights",
@@ -140,8 +157,12 @@ __all__ = [
     "isotropy",
     "kinematic_ellipsoid",
     "load",
+    "map_over",
+    "merge_shards",
+    "open_sweep",
     "passive_force_ellipsoid",
     "plot_comparison",
+    "plot_map",
     "plot_mechanism",
     "save",
     "save_figure",
@@ -187,6 +208,9 @@ _HOME = {
     "CompiledMechanism": "vincula.kernels.compiled:CompiledMechanism",
     "compile": "vincula.kernels.compiled:compile_mechanism",
     "Evaluation": "vincula.kernels.evaluation:Evaluation",
+    "SingularityMap": "vincula.maps.singularity_map:SingularityMap",
+    "map_over": "vincula.maps.singularity_map:map_over",
+    "Variable": "vincula.maps.variables:Variable",
     "Branch": "vincula.mechanism.branches:Branch",
     "ClosedConfiguration": "vincula.mechanism.closed:ClosedConfiguration",
     "Configuration": "vincula.mechanism.configuration:Configuration",
@@ -216,7 +240,17 @@ _HOME = {
     "Pose": "vincula.spatial.poses:Pose",
     "Weights": "vincula.weights:Weights",
     "characteristic_length_weights": "vincula.weights:characteristic_length_weights",
+    "Sweep": "vincula.sweep.sweep:Sweep",
+    "SweepData": "vincula.sweep.dataset:SweepData",
+    "open_sweep": "vincula.sweep.dataset:open_sweep",
+    "merge_shards": "vincula.sweep.merging:merge_shards",
+    "Grid": "vincula.sweep.points:Grid",
+    "Polyline": "vincula.sweep.points:Polyline",
+    "PointTable": "vincula.sweep.points:PointTable",
+    "RandomPoints": "vincula.sweep.scattered:RandomPoints",
+    "LowDiscrepancyPoints": "vincula.sweep.scattered:LowDiscrepancyPoints",
     "plot_comparison": "vincula.view.plot:plot_comparison",
+    "plot_map": "vincula.view.map_figure:plot_map",
     "plot_mechanism": "vincula.view.plot:plot_mechanism",
     "save_figure": "vincula.view.plot:save_figure",
 }

@@ -10,6 +10,7 @@ from vincula.errors import (
     MissingReferenceError,
     MixedUnitsError,
     ModelError,
+    SweepError,
     UnknownNameError,
     VinculaError,
     WeightError,
@@ -49,4 +50,6 @@ def exit_code(error: VinculaError) -> int:
     """
     if isinstance(error, _WRITTEN_BY_THE_USER):
         return USAGE
+    if isinstance(error, SweepError):
+        return {"usage": USAGE, "refused": REFUSED, "storage": STORAGE}[error.kind]
     return REFUSED if isinstance(error, (ClosureError, ModelError)) else USAGE

@@ -24,6 +24,8 @@ COMMANDS: Final = {
     "compare": "compare",
     "close": "close",
     "follow": "follow",
+    "map": "map",
+    "sweep": "sweep",
     "plot": "plot",
     "convert": "convert",
     "examples": "examples",
@@ -112,7 +114,7 @@ its mobility, its statics and its manipulability.
   vincula compare example:five-bar --active o1,o5 --active o2,o4 --active all
 
 Exit codes: 0 done, 1 refused (an open loop, say), 2 bad usage, bad file or missing extra, 3 doubtful
-under --strict, 130 interrupted.
+under --strict, 4 results cannot be stored, 130 interrupted.
 """
 
 

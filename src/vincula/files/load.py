@@ -218,8 +218,15 @@ class _Loader:
             from vincula.files.urdf import load_urdf
 
             self.beside_was_read = True
-            options = {"snapping": self._snapping, "packages": self._packages}
-            return Loaded(*load_urdf(source, self._limits, beside=self._beside, **options))
+            return Loaded(
+                *load_urdf(
+                    source,
+                    self._limits,
+                    beside=self._beside,
+                    snapping=self._snapping,
+                    packages=self._packages,
+                )
+            )
         if root == "sdf":
             from vincula.files.sdf import load_sdf
 

@@ -1,7 +1,7 @@
 """The accessor `.vincula` of xarray data sets: what is ok, index maps, slices, singularity curves.
 
 data = vincula.open_sweep("five-bar.zarr").to_xarray()
-data.vincula.map("kinematic.inverse_condition:translation")
+data.vincula.map("kinematic.inverse_condition_number:translation")
 """
 
 from __future__ import annotations

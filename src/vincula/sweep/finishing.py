@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
@@ -12,16 +13,21 @@ from vincula.sweep.storage import DurableFolder
 if TYPE_CHECKING:
     from vincula.sweep.running import Places
 
+_NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 TOLD: Final = 100
 """Different reasons that the data set tells; the ledger keeps more."""
 
 
 def gathered(reasons: Iterable[Reason]) -> dict[str, int]:
-    """Number of points by reason, for the first hundred different ones."""
+    """Number of points by kind of reason, for the first hundred kinds.
+
+    A kind is the first sentence with its numbers left out; the ledger has every text in full.
+    """
     found: dict[str, int] = {}
     for reason in reasons:
-        if reason.text in found or len(found) < TOLD:
-            found[reason.text] = found.get(reason.text, 0) + reason.last - reason.first + 1
+        kind = _NUMBER.sub("...", reason.text.partition(". ")[0])
+        if kind in found or len(found) < TOLD:
+            found[kind] = found.get(kind, 0) + reason.last - reason.first + 1
     return found
 
 

@@ -52,12 +52,21 @@ def merge_shards(output: str | Path, shards: Sequence[str | Path] | None = None)
     return SweepData(places.data)
 
 
-def _beside(places: Places) -> list[Places]:
+def shares_beside(places: Places) -> list[Places]:
+    """The shares of a sweep that lie beside its data set."""
     pattern = re.compile(re.escape(places.data.name) + r"\.shard-\d+-of-\d+")
-    found = sorted(path for path in places.data.parent.iterdir() if pattern.fullmatch(path.name))
+    folder = places.data.parent
+    found = (
+        sorted(path for path in folder.iterdir() if pattern.fullmatch(path.name)) if folder.is_dir() else []
+    )
+    return [Places(path) for path in found]
+
+
+def _beside(places: Places) -> list[Places]:
+    found = shares_beside(places)
     if not found:
         raise SweepError(f"{places.data}: no shares are beside it; run them with --shard i/n", kind="usage")
-    return [Places(path) for path in found]
+    return found
 
 
 def _common_manifest(parts: Sequence[Places]) -> dict[str, Any]:

@@ -171,7 +171,7 @@ class Row(Points):
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Table(Row):
+class PointTable(Row):
     """Points given one by one: a column of values for every variable.
 
     Args:

@@ -164,12 +164,12 @@ class ProcessExecutor(Executor):
         return found
 
     def _answered(self, worker: _Worker, answer: Any) -> list[Outcome]:
-        chunk, block = answer
+        chunk, block, error = answer
         task, worker.task = worker.task, None
         if task is None or task.chunk != chunk:
             return []
         self._slowest = max(self._slowest, time.monotonic() - worker.began)
-        return [Outcome(task, block)]
+        return [Outcome(task, block, error)]
 
     def _died(self, worker: _Worker, how: str) -> list[Outcome]:
         self._workers.remove(worker)

@@ -19,7 +19,7 @@ MOST_SOBOL_POINTS: Final = 2**30
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Random(Row):
+class RandomPoints(Row):
     """Independent points, evenly distributed over ranges.
 
     Args:
@@ -55,7 +55,7 @@ class Random(Row):
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class LowDiscrepancy(Row):
+class LowDiscrepancyPoints(Row):
     """Points that fill ranges more evenly than random ones (scrambled, by `scipy.stats.qmc`).
 
     Args:
@@ -129,7 +129,7 @@ def _quiet(engine: Any, count: int) -> Matrix:
     return drawn
 
 
-def _set_ranges(target: Random | LowDiscrepancy, ranges: Any, points: int, seed: int) -> None:
+def _set_ranges(target: RandomPoints | LowDiscrepancyPoints, ranges: Any, points: int, seed: int) -> None:
     pairs = pairs_of(ranges, "ranges")
     names = named([name for name, _ in pairs])
     bounds = np.array([checked(np.ravel(v), f"range of {name!r}", (2,)) for name, v in pairs])

@@ -23,7 +23,7 @@ from vincula.sweep.inputs import Inputs, inputs_for
 from vincula.sweep.layout import SCHEMA, Layout, layout_of
 from vincula.sweep.ledger import FORMAT
 from vincula.sweep.points import Grid, Points
-from vincula.sweep.scattered import LowDiscrepancy, Random
+from vincula.sweep.scattered import LowDiscrepancyPoints, RandomPoints
 from vincula.sweep.work import Block, Work
 from vincula.weights import Weights
 
@@ -42,8 +42,8 @@ class Sweep:
 
     Args:
         mechanism: The mechanism, a function of parameters that makes it, or a compiled one.
-        over: Where to go: `Grid`, `Polyline`, `Random`, `LowDiscrepancy`, `Table`, or values by variable for
-            a grid.  Variables are motors, joints or axes by name, components of the reference member's
+        over: Where to go: `Grid`, `Polyline`, `RandomPoints`, `LowDiscrepancyPoints`, `PointTable`, or
+            values by variable for a grid.  Variables are motors, joints or axes by name, components of the reference member's
             pose (`reference.x` ... `reference.yaw`, in the plane `reference.angle`), and parameters [m, rad].
         quantities: What to compute, by name (see `vincula.compile(...).quantities`).
         given: What the points are: `motors` and `reference` close the loops for motor values or a pose,
@@ -108,7 +108,7 @@ class Sweep:
     @cached_property
     def work(self) -> Work:
         """What all chunks have in common."""
-        scattered = isinstance(self.points, (Random, LowDiscrepancy))
+        scattered = isinstance(self.points, (RandomPoints, LowDiscrepancyPoints))
         return Work(self.compiled, self.inputs, self._asked, scattered)
 
     @cached_property

@@ -13,6 +13,7 @@ import signal
 import struct
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, BinaryIO, Final
 
 HEAD: Final = struct.Struct("<Q")
@@ -57,12 +58,19 @@ def main() -> None:
     sys.stdout = io.TextIOWrapper(os.fdopen(sys.stderr.fileno(), "wb", closefd=False))
     warnings.simplefilter("ignore")  # told by the process that we work for
     work = receive(tasks)
-    while (task := receive(tasks)) is not None:
-        block = work.evaluate(task.values, task.extent, task.start)
-        try:
-            send(answers, (task.chunk, block))
-        except OSError:
-            return
+    with ThreadPoolExecutor(
+        1
+    ) as pool:  # a future keeps whatever goes wrong, to be told instead of dying of it
+        while (task := receive(tasks)) is not None:
+            future = pool.submit(work.evaluate, task.values, task.extent, task.start)
+            error = future.exception()
+            block = None if error is not None else future.result()
+            try:
+                send(
+                    answers, (task.chunk, block, "" if error is None else f"{type(error).__name__}: {error}")
+                )
+            except OSError:
+                return
 
 
 if __name__ == "__main__":
