@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -146,3 +147,19 @@ def test_keyframes_of_a_robot_file(run_json, models: Path) -> None:
     found = run_json("inspect", robot, "--at", "key:home")
     values = {joint["name"]: joint["values"] for joint in found["joints"]}
     assert values["FR_thigh_joint"] == pytest.approx([0.9])
+
+
+def test_at_of_the_whole_file_goes_with_another_ground(run, run_json, tmp_path: Path) -> None:
+    """`close -o` writes the pose of a floating base too; seen from the base, the floor moves instead."""
+    file = str(tmp_path / "closed.json")
+    lifted = "float=[0.1,0,0.05,0.9921977,0,0.1246747,0]"  # by a quarter of a radian
+    run("close", "example:quadruped", "--at", lifted, "-o", file)
+    whole = json.loads(Path(file).read_text(encoding="utf-8"))
+    assert abs(whole["float"][0]) > 0.01
+    assert any(abs(value) > 0.01 for name, value in whole.items() if name != "float")
+    words = ["analyze", "example:quadruped", "--ground", "trunk", "--reference", "fl_shank"]
+    joints = ",".join(f"{name}={value!r}" for name, value in whole.items() if name != "float")
+    alone = run_json(*words, "--at", joints, "--close")
+    there = run_json(*words, "--at", file)
+    assert there["closure"]["residual"] < 1e-9
+    assert there["kinematic"]["efficiencies"] == pytest.approx(alone["kinematic"]["efficiencies"], rel=1e-6)

@@ -16,16 +16,24 @@ MOST: Final = 8
 """Axes that are named as moved."""
 
 
-def closed_near(mechanism: Mechanism, start: Configuration, at: str | None) -> Configuration:
+def closed_near(
+    mechanism: Mechanism, start: Configuration, drawn: Mechanism, at: str | None
+) -> Configuration:
     """A closed configuration near the start; the start itself where it is closed.
 
     Joints named in an `--at NAME=VALUE` text are held where they were put; where it cannot be closed
     like that they are let go, and that is told.
 
+    Args:
+        mechanism: What is closed.
+        start: Where to start.
+        drawn: The mechanism of the file, before another body became its ground.
+        at: CONFIG as it was written.
+
     Raises:
         ClosureError: It cannot be closed at all.
     """
-    named = _named(mechanism, at)
+    named = [name for name in _named(drawn, at) if name in mechanism.home]
     try:
         q = mechanism.close(start, motors={name: start[name] for name in named})
     except ClosureError as error:

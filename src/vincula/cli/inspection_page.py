@@ -6,15 +6,21 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any, Final
 
-from vincula.cli.page import Column, Page, Table, number, plural, point
+from vincula.cli.inspection_joints import connections
+from vincula.cli.page import Page, few, number, plural, point
 from vincula.errors import listing
 
+SCREEN: Final = 40
+"""Lines that a page should not exceed; tables are cut down to it, but not below FEWEST_ROWS."""
 MOST_ROWS: Final = 10
 """Rows for joints and contacts before the rest is only counted; `--all` shows them."""
+FEWEST_ROWS: Final = 4
 MOST_LOOPS: Final = 2
 """The same for loops."""
-MOST_CHARACTERS: Final = 160
-"""A loop is told with its bodies as long as that takes no more characters."""
+MOST_NAMES: Final = 3
+"""Ignored elements are named up to this many of a kind; `--all` names them all."""
+LABELS: Final = 20
+"""Columns that the labels of the summary take."""
 
 Facts = Mapping[str, Any]
 
@@ -24,13 +30,24 @@ def inspection_page(facts: Facts, *, everything: bool = False) -> Page:
 
     Args:
         facts: What is known.
-        everything: Show every row of every table.
+        everything: Show every row of every table, and every name.
     """
+    if everything:
+        return _page(facts, 10**9, 10**9, everything=True)
+    page = _page(facts, MOST_ROWS, MOST_LOOPS)
+    if page.height > SCREEN:
+        page = _page(facts, MOST_ROWS, 1)
+    if page.height > SCREEN:
+        page = _page(facts, max(FEWEST_ROWS, MOST_ROWS - (page.height - SCREEN)), 1)
+    return page
+
+
+def _page(facts: Facts, rows: int, loops: int, *, everything: bool = False) -> Page:
     page = Page()
     page.heading(facts["mechanism"], f"{facts['space']} mechanism from {facts['file']}")
-    page.facts(_summary(facts))
-    _connections(page, facts, 10**9 if everything else MOST_ROWS)
-    _loops(page, facts, 10**9 if everything else MOST_LOOPS)
+    page.facts(_summary(facts, 10**9 if everything else page.width - LABELS))
+    connections(page, facts, rows, everything=everything)
+    _loops(page, facts, loops, 10**9 if everything else 2 * (page.width - 4))
     _load(page, facts["load"], everything)
     for note in facts["notes"]:
         page.sentence(note, "note:")
@@ -38,25 +55,31 @@ def inspection_page(facts: Facts, *, everything: bool = False) -> Page:
     return page
 
 
-def _summary(facts: Facts) -> list[tuple[str, str]]:
+def _summary(facts: Facts, line: int) -> list[tuple[str, str]]:
+    """Label and text of every fact; lists of names are cut to one line, of motors to two."""
     kinds = Counter(joint["type"] for joint in facts["joints"])
     axes = [axis for joint in facts["joints"] for axis in joint["axes"]]
     passive = [axis["name"] for axis in axes if axis["state"] == "passive"]
     motors = facts["active"]
     return [
-        ("bodies", f"{len(facts['bodies'])} and the ground: {_names(facts['bodies'])}"),
+        ("bodies", _counted(f"{len(facts['bodies'])} and the ground", _names(facts["bodies"]), line)),
         ("joints", _tally(kinds) or "none"),
         ("contacts", _tally(Counter(contact["type"] for contact in facts["contacts"]))),
-        ("couplings", _names(facts["couplings"])),
-        ("motors", f"{len(motors)}: {listing(motors, 8)}" if motors else "none"),
-        ("passive", f"{len(passive)}: {listing(passive, 8)}" if passive else "none"),
-        ("locked", listing(facts["locked"]) if facts["locked"] else ""),
+        ("couplings", few(_names(facts["couplings"]), line)),
+        ("motors", _counted(str(len(motors)), motors, 2 * line) if motors else "none"),
+        ("passive", _counted(str(len(passive)), passive, line) if passive else "none"),
+        ("locked", few(facts["locked"], line)),
         ("loops", _loop_words(facts)),
         ("mobility", _mobility_words(facts["mobility"])),
         ("reference member", _reference_words(facts)),
-        ("sites and frames", _names(facts["frames"])),
+        ("sites and frames", few(_names(facts["frames"]), line)),
         ("configurations", _keyframes(facts)),
     ]
+
+
+def _counted(count: str, names: list[str], line: int) -> str:
+    """`3: a, b, c`."""
+    return f"{count}: {few(names, line - len(count) - 2)}" if names else count
 
 
 def _keyframes(facts: Facts) -> str:
@@ -64,8 +87,8 @@ def _keyframes(facts: Facts) -> str:
     return f"{listing(names)} (for --at)" if names else ""
 
 
-def _names(parts: list[dict[str, Any]]) -> str:
-    return listing((part["name"] for part in parts), 8) if parts else ""
+def _names(parts: list[dict[str, Any]]) -> list[str]:
+    return [part["name"] for part in parts]
 
 
 def _tally(kinds: Counter[str]) -> str:
@@ -96,63 +119,19 @@ def _reference_words(facts: Facts) -> str:
     return f"{reference['body']}, point {point(reference['point'])} m on it, {reference['axes']} axes"
 
 
-def _connections(page: Page, facts: Facts, most: int) -> None:
-    """Joints and contacts in one table; fixed joints only where there is nothing else."""
-    joints = [joint for joint in facts["joints"] if joint["type"] != "fixed"] or facts["joints"]
-    rows = [[j["name"], j["type"], " - ".join(j["between"]), _values(j), _roles(j)] for j in joints]
-    rows += [[c["name"], c["type"], " - ".join(c["between"]), "", "contact"] for c in facts["contacts"]]
-    if not rows:
-        return
-    page.heading("Joints and contacts" if facts["contacts"] else "Joints")
-    columns = [
-        Column("name"),
-        Column("type"),
-        Column("connects", fold=True),
-        Column("value", justify="right"),
-        Column("role", fold=True),
-    ]
-    page.table(Table(columns, rows[:most]))
-    left_out, fixed = len(rows) - len(rows[:most]), len(facts["joints"]) - len(joints)
-    more = [f"{left_out} more (--all shows them)"] if left_out else []
-    more += [f"{plural(fixed, 'fixed joint')} not listed"] if fixed else []
-    if more:
-        page.sentence("; ".join(more))
-
-
-def _values(joint: Facts) -> str:
-    if joint["closes_loop"]:
-        return ""
-    values, axes = joint["values"], joint["axes"]
-    if len(values) == len(axes):
-        return ", ".join(
-            f"{number(value, 4)} {axis['unit']}" for value, axis in zip(values, axes, strict=True)
-        )
-    return "pose" if len(values) == 7 else f"({', '.join(number(value, 3) for value in values)})"
-
-
-def _roles(joint: Facts) -> str:
-    if not joint["axes"]:
-        return "closes a loop" if joint["closes_loop"] else "rigid"
-    states = [axis["state"] for axis in joint["axes"]]
-    if len(set(states)) <= 1:
-        return str(states[0])
-    return ", ".join(f"{axis['name']} {axis['state']}" for axis in joint["axes"])
-
-
-def _loops(page: Page, facts: Facts, most: int) -> None:
-    loops = facts["loops"]
+def _loops(page: Page, facts: Facts, most: int, room: int) -> None:
+    loops, closure = facts["loops"], facts["closure"]
     if loops:
         page.heading("Loops", "joints and contacts in the order of a walk round")
         for index, loop in enumerate(loops[:most], start=1):
-            page.sentence(_walk(loop), f"{index}")
+            page.sentence(_walk(loop, room), f"{index}")
         if len(loops) > most:
             page.sentence(f"{plural(len(loops) - most, 'more loop')} (--all shows them)")
-    for gap in facts["closure"]["open"]:
-        page.sentence(
-            f"{gap['kind']} {gap['name']!r} is open by {_gap(gap)}: more than "
-            f"{number(facts['closure']['allowed'], 2)} m counts as open",
-            "open:",
-        )
+    gaps = closure["open"]
+    if gaps:
+        shown = [f"{gap['name']} by {_gap(gap)}" for gap in gaps]
+        limit = f"; at most {number(closure['allowed'], 2)} m counts as closed"
+        page.sentence(f"{few(shown, max(room - len(limit), 0), separator='; ')}{limit}", "open:")
 
 
 def _gap(gap: Facts) -> str:
@@ -161,13 +140,13 @@ def _gap(gap: Facts) -> str:
     return " and ".join(parts)
 
 
-def _walk(loop: Facts) -> str:
+def _walk(loop: Facts, room: int) -> str:
     """The loop with its bodies if that is short, else its joints alone."""
     texts = [loop["bodies"][0]]
     for part, body in zip(loop["parts"], [*loop["bodies"][1:], loop["bodies"][0]], strict=True):
         texts.append(f"-{part}- {body}")
     with_bodies = " ".join(texts)
-    return with_bodies if len(with_bodies) <= MOST_CHARACTERS else ", ".join(loop["parts"])
+    return with_bodies if len(with_bodies) <= room else few(loop["parts"], room)
 
 
 def _load(page: Page, load: Facts, everything: bool) -> None:
@@ -193,16 +172,20 @@ def _reasons(load: Facts, everything: bool) -> list[tuple[str, str]]:
         said = []
         for kind, entries in kinds.items():
             names = [entry["name"] for entry in entries if entry["name"]]
-            shown = f" ({listing(names, 10**6 if everything else 4)})" if names else ""
+            few_enough = names and (everything or len(names) <= MOST_NAMES)
+            shown = f" ({', '.join(names)})" if few_enough else ""
             said.append(f"{sum(entry['count'] for entry in entries)} {kind}{shown}")
         texts.append((fate, f"{', '.join(said)}: {detail or 'no reason given'}"))
     return texts
 
 
 def _next_step(page: Page, facts: Facts) -> None:
-    if facts["reference"] is not None:
+    """The command that a newcomer wants next: a member to name, loops to close."""
+    opened, missing = bool(facts["closure"]["open"]), facts["reference"] is None
+    if not (opened or missing):
         return
-    bodies = [body["name"] for body in facts["bodies"]]
-    page.heading("Next", "name the body whose motion and forces you want, the reference member")
-    page.sentence(f"vincula analyze {facts['file']} --reference BODY")
-    page.sentence(f"BODY is one of {listing(bodies, 8)}")
+    wanted = ["name the body whose motion and forces you want, the reference member"] if missing else []
+    wanted += ["close the loops"] if opened else []
+    page.heading("Next", ", and ".join(wanted))
+    words = f"{' --reference BODY' if missing else ''}{' --close' if opened else ''}"
+    page.sentence(f"vincula analyze {facts['file']}{words}")

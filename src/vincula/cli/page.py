@@ -134,22 +134,40 @@ class Page:
 
         self._parts.append(print_table)
 
+    @property
+    def width(self) -> int:
+        """Columns of the terminal."""
+        return _console().width
+
+    @property
+    def height(self) -> int:
+        """Lines that the page takes."""
+        return len(self._lines(_console()))
+
     def show(self) -> None:
         """Print the page on stdout; without blanks at line ends where that is no terminal."""
         import click
-        from rich.console import Console
 
-        console = Console(markup=False, highlight=False, emoji=False)
+        console = _console()
         if console.is_terminal:
             self._print(console)
             return
+        click.echo("\n".join(line.rstrip() for line in self._lines(console)))
+
+    def _lines(self, console: Console) -> list[str]:
         with console.capture() as captured:
             self._print(console)
-        click.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
+        return captured.get().splitlines()
 
     def _print(self, console: Console) -> None:
         for part in self._parts:
             part(console)
+
+
+def _console() -> Console:
+    from rich.console import Console
+
+    return Console(markup=False, highlight=False, emoji=False)
 
 
 def _print_indented(console: Console, table: object) -> None:
@@ -193,6 +211,18 @@ def combination(values: Iterable[float], names: Sequence[str], width: int = 10_0
             lines[-1] += f" {term}" if lines[-1] else term
     more = len(kept) - most
     return "\n".join(lines) + (f" ... ({more} more)" if more > 0 else "")
+
+
+def few(names: Iterable[str], room: int, *, separator: str = ", ") -> str:
+    """As many names as fit into `room` characters, at least one; the rest is counted."""
+    everything = list(names)
+    for count in range(len(everything), 1, -1):
+        more = len(everything) - count
+        text = separator.join(everything[:count]) + (f" ... ({more} more)" if more else "")
+        if len(text) <= room:
+            return text
+    more = len(everything) - 1
+    return "".join(everything[:1]) + (f" ... ({more} more)" if more > 0 else "")
 
 
 def point(values: Iterable[float]) -> str:

@@ -8,7 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal, TypeVar, cast
 
 from vincula.cli.exits import BadOptionError
+from vincula.cli.page import few
 from vincula.errors import ClosureError, MissingReferenceError, ModelError, UnknownNameError
+from vincula.mechanism.parts import GROUND
 
 if TYPE_CHECKING:
     from vincula.files.report import LoadReport
@@ -92,8 +94,10 @@ def read_subject(
     at: str | None,
     tolerance: str | None,
     loops: Sequence[str] = (),
+    package_dirs: Sequence[str] = (),
     ground: str | None = None,
     closing: bool = False,
+    snap: bool = False,
 ) -> Subject:
     """The mechanism of a file with the common options applied.
 
@@ -104,11 +108,13 @@ def read_subject(
     """
     from vincula.files.configuration import read_configuration
     from vincula.files.load import load_with_report
+    from vincula.mechanism.grounding import seen_from
 
     def load() -> tuple[Mechanism, LoadReport]:
-        return load_with_report(file, parameters, beside=loops)
+        return load_with_report(file, parameters, beside=loops, package_dirs=package_dirs, snap=snap)
 
-    mechanism, report = _usage("--set" if parameters else "", load)
+    drawn, report = _usage("--set" if parameters else "", load)
+    mechanism = drawn
     if ground is not None:
         mechanism = _usage("--ground", lambda: mechanism.with_ground(ground))
     if lock is not None:
@@ -118,11 +124,12 @@ def read_subject(
         mechanism = mechanism.with_tolerance(*tolerances(tolerance))
     configuration = mechanism.home
     if at is not None:
-        configuration = _usage("--at", lambda: read_configuration(at, mechanism, report.units))
+        values = _usage("--at", lambda: read_configuration(at, drawn, report.units))
+        configuration = seen_from(drawn, mechanism, ground, values) if ground is not None else values
     if closing:
         from vincula.cli.closing import closed_near
 
-        configuration = closed_near(mechanism, configuration, at)
+        configuration = closed_near(mechanism, configuration, drawn, at)
     return Subject(file, mechanism, configuration, report)
 
 
@@ -148,9 +155,14 @@ def split_reference(mechanism: Mechanism, text: str) -> tuple[str, list[float] |
     if text in mechanism.body or text in ("ground", "world") or not at:
         body, point = text, ""
     if body not in mechanism.body and body not in ("ground", "world"):
-        carriers = [f"{frame.body}@{frame.name}" for frame in mechanism.frames if frame.name == body]
+        carriers = [frame.body for frame in mechanism.frames if frame.name == body]
+        if carriers and carriers[0] == GROUND:
+            raise BadOptionError(
+                f"--reference: {body!r} is part of the ground here and cannot move; name a body that does "
+                f"({few(mechanism.body, 60)}), or see it from there: --ground BODY --reference world@{body}"
+            )
         if carriers:
-            raise BadOptionError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}")
+            raise BadOptionError(f"{body!r} is a frame, not a body: say --reference {carriers[0]}@{body}")
         raise UnknownNameError("body", body, mechanism.body)
     if at and not point and text not in mechanism.body:
         raise BadOptionError(f"{text!r} names no point: say BODY, BODY@FRAME or BODY@x,y,z")

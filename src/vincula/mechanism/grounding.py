@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from vincula.errors import UnknownNameError
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.joint_types import values_between
+from vincula.mechanism.kinematics import part_frames
 from vincula.mechanism.parts import GROUND, Body, ContactPart, Cut, Frame, Joint, ReferenceMember
 from vincula.spatial.poses import Pose
 
@@ -20,7 +23,7 @@ _Part = TypeVar("_Part", Joint, ContactPart)
 
 def with_ground(mechanism: Mechanism, body: str) -> Mechanism:
     """The same mechanism seen from a body that is now the ground; see `Mechanism.with_ground`."""
-    if body == GROUND:
+    if body == GROUND or _is_ground(mechanism, body):
         return mechanism
     if body not in mechanism.body:
         raise UnknownNameError("body", body, mechanism.body)
@@ -52,6 +55,45 @@ def with_ground(mechanism: Mechanism, body: str) -> Mechanism:
         motors={m: axis for m, axis in mechanism.motors.items() if axis not in gone | dropped},
         keyframes=_without(mechanism.keyframes, dropped),
         notes=(*mechanism.notes, f"{body} is the ground: positions and directions are in its axes"),
+    )
+
+
+def seen_from(drawn: Mechanism, grounded: Mechanism, body: str, q: Configuration) -> Configuration:
+    """A configuration of a mechanism as one of the same mechanism with another ground.
+
+    A free joint that led to the new ground is gone, with its value; where the old ground is a body that
+    floats now, that body gets its pose from it.
+
+    Args:
+        drawn: The mechanism.
+        grounded: `with_ground(drawn, body)`.
+        body: The new ground.
+        q: The configuration of `drawn`.
+    """
+    values = {name: q[name] for name in grounded.home if name in q}
+    floating = [joint for joint in grounded.all_joints if joint.name in grounded.home and joint.name not in q]
+    if floating:
+        poses = drawn.body_poses(q)
+        seen = poses[body].inverse()
+        there = {name: seen @ pose for name, pose in poses.items() if name not in (body, GROUND)}
+        there[GROUND] = Pose.identity(drawn.space.translations)
+        there.update({b.name: seen for b in grounded.bodies if b.name not in drawn.body})
+        for joint in floating:
+            frames = part_frames(joint, there)
+            values[joint.name] = values_between(grounded.type_of(joint), *frames, joint.second_axis)
+    return grounded.configuration(values)
+
+
+def _is_ground(mechanism: Mechanism, name: str) -> bool:
+    """Whether it is the name that the ground has in the file: a frame that coincides with it."""
+    here = Pose.identity(mechanism.space.translations)
+    return any(
+        frame.name == name
+        and frame.body == GROUND
+        and np.array_equal(frame.pose.position, here.position)
+        and np.array_equal(frame.pose.rotation, here.rotation)
+        for frame in mechanism.frames
+        if name not in mechanism.body
     )
 
 
