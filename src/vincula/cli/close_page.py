@@ -17,6 +17,8 @@ MOST_COLUMNS: Final = 8
 """Joints whose values are shown in the table of modes."""
 LONGEST: Final = 400
 """Longest text of a configuration that is shown to be copied."""
+NOISE: Final = 1e-12
+"""Values below this are shown as 0 [rad, m]; JSON and `--at` texts have them in full."""
 REGULAR: Final = 0.5
 """Kantorovich numbers below this prove a regular closed configuration near by."""
 
@@ -79,7 +81,7 @@ def closure_page(subject: Subject, q: ClosedConfiguration) -> Page:
     """The page of one closed configuration."""
     page = Page()
     page.heading(subject.mechanism.name, "closed")
-    page.facts(_facts(q))
+    page.facts(_facts(q, named=subject.mechanism.reference is not None))
     for singularity in q.singularities:
         page.sentence(str(singularity), mark="!")
     page.heading("Values", "m, rad")
@@ -92,14 +94,16 @@ def closure_page(subject: Subject, q: ClosedConfiguration) -> Page:
     return page
 
 
-def _facts(q: ClosedConfiguration) -> list[tuple[str, str]]:
+def _facts(q: ClosedConfiguration, *, named: bool) -> list[tuple[str, str]]:
+    """Label and text; branches and two of three kinds of singularity need a reference member."""
+    missing = "--reference BODY tells"
     proof = "proved" if q.kantorovich < REGULAR else "not proved"
     facts = [
         ("residual", f"{number(q.residual, 2)} m (angles times the characteristic length)"),
         ("found in", f"{plural(q.iterations, 'iteration')} from {plural(q.attempts, 'start')}"),
         ("regular solution", f"{proof}: Kantorovich number {number(q.kantorovich, 2)}"),
-        ("branch", str(q.branch)),
-        ("singular", "yes" if q.singular else "no"),
+        ("branch", str(q.branch) if named else missing),
+        ("singular", "yes" if q.singular else "no" if named else f"the loops are not; {missing} the rest"),
         ("free motions left", str(q.free_motions)),
     ]
     if q.at_limits:
@@ -125,7 +129,8 @@ def _values(subject: Subject, q: ClosedConfiguration) -> Table:
 
 
 def _listed(values: Sequence[float] | Any) -> str:
-    return " ".join(number(float(value)) for value in values)
+    """Values with noise of rounding shown as what it is."""
+    return " ".join(number(0.0 if abs(float(value)) < NOISE else float(value)) for value in values)
 
 
 def _quoted(subject: Subject, q: Configuration) -> str:
