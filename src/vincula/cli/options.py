@@ -53,13 +53,24 @@ set_option = click.option(
     help="Set a declared parameter of the file or example; units are allowed (alpha=1deg). Repeatable.",
 )
 
-loops_option = click.option(
+_side_files_option = click.option(
     "--loops",
     multiple=True,
     metavar="SIDEFILE",
     help="A file beside a URDF file: loops and motors (Gepetto's robot.yaml) or passive joints (SRDF). "
     "Repeatable; without it STEM.yaml, robot.yaml and STEM.srdf beside the file are looked for.",
 )
+
+_packages_option = click.option(
+    "--package-dir",
+    "package_dirs",
+    multiple=True,
+    metavar="DIR",
+    help="A folder of packages, or a package: where package:// and $(find NAME) lead, before "
+    "ROS_PACKAGE_PATH and AMENT_PREFIX_PATH. Repeatable.",
+)
+
+loops_option = together(_side_files_option, _packages_option)
 
 active_option = click.option(
     "--active",

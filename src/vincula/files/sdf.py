@@ -11,6 +11,7 @@ from typing import Final
 
 from vincula.files.dialects.drake import read_constraint
 from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.packages import Packages, record_meshes
 from vincula.files.problems import Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, RobotDraft
@@ -43,6 +44,7 @@ def load_sdf(
     limits: Limits = DEFAULT_LIMITS,
     *,
     snapping: Snapping | None = None,
+    packages: Packages | None = None,
 ) -> tuple[Mechanism, LoadReport]:
     """The mechanism of an SDF file with one model, at the drawn pose.
 
@@ -53,6 +55,7 @@ def load_sdf(
         path: The file, or its text where it is open already.
         limits: How much the file may hold.
         snapping: Replaces numbers of the file by what they mean.
+        packages: Where `package://` leads; by default to the packages of the environment.
 
     Returns:
         The mechanism, and the report of everything used and ignored.
@@ -67,6 +70,7 @@ def load_sdf(
     if snapping is not None:
         snapping.sdf(root)
     reader.read(root)
+    record_meshes(root, source.path, packages or Packages.of(), reader.report)
     return reader.finish(limits), reader.report
 
 

@@ -14,6 +14,7 @@ from vincula.arrays import Vector
 from vincula.files.dialects import reader_of_element, side_files
 from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.packages import Packages, record_meshes
 from vincula.files.problems import Place, Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint, RobotDraft
@@ -68,6 +69,7 @@ def load_urdf(
     *,
     beside: Sequence[str | os.PathLike[str]] = (),
     snapping: Snapping | None = None,
+    packages: Packages | None = None,
 ) -> tuple[Mechanism, LoadReport]:
     """The mechanism of a URDF file, at zero joint values.
 
@@ -79,6 +81,7 @@ def load_urdf(
         limits: How much the files may hold.
         beside: Side files (loops, SRDF); by default those found beside the file.
         snapping: Replaces numbers of the file (not of side files) by what they mean.
+        packages: Where `package://` leads; by default to the packages of the environment.
 
     Returns:
         The mechanism, and the report of everything used and ignored.
@@ -93,6 +96,7 @@ def load_urdf(
     if snapping is not None:
         snapping.urdf(root)
     reader.read(root)
+    record_meshes(root, source.path, packages or Packages.of(), reader.report)
     for loops in side_files(source, beside, limits):
         loops.read(reader.draft, reader.values, reader.report)
     mechanism = reader.finish()
