@@ -1,0 +1,226 @@
+"""From one closed configuration to the next in lanes, on the same branch.
+
+Each lane holds a closed configuration and what is given there, and is carried to what is asked for:
+at once where that is near, else in shorter ways, which get shorter still where closing is given up and longer again
+where it is not.  Values are foretold along the last way where the new one goes on in its direction.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from vincula.kernels.lanes import closing_tables as c
+from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.closing_newton import close_lanes
+from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
+from vincula.kernels.lanes.vector import (
+    absolute,
+    at_least,
+    at_most,
+    both,
+    fma,
+    fnma,
+    larger,
+    less,
+    load,
+    more,
+    rsqrt,
+    select,
+    some_lane,
+    splat,
+    store,
+)
+
+LONGEST_WAY: Final = 0.35
+"""What is given moves by no more at once [rad, or lengths L]."""
+SHORTEST_WAY: Final = 1e-5
+"""A lane that does not close over a way as short as this is left open."""
+MOST_WAYS: Final = 400
+"""Ways tried before a lane is left open."""
+STRAIGHT: Final = 0.04
+"""A way goes on in the direction of the last where what is left of it, squared, is below this share."""
+
+
+@kernel
+def walk(
+    w: Slots, code: Code, plan: Code, constants: Slots, base: int, target: int, wanted: Lane, z: Lane
+) -> tuple[Lane, Lane, Lane]:
+    """Carry every lane to what is asked for, as far as it goes.
+
+    Args:
+        w: The workspace; `STATE` begins with the values last closed, the last way of the values, what was given there, the
+            last way of that.
+        code: Values and frames.
+        plan: Tables of closing.
+        constants: Constants.
+        base: See `frames.place_all`.
+        target: Slot of what is asked for.
+        wanted: 1 in lanes that are to move.
+        z: Zero.
+
+    Returns:
+        1 in lanes that arrived, the number of steps, the sum of the squares of the gaps.
+    """
+    half, one = splat(0.5, z), splat(1.0, z)
+    live, arrived, steps, hope, gap = wanted, z, z, one, z
+    reach = splat(LONGEST_WAY, z)
+    for _ in range(MOST_WAYS):
+        if not some_lane(more(live, half)):
+            break
+        left = _distance(w, plan, base, target, z)
+        whole = at_most(left, reach)
+        share = select(whole, one, reach / left)
+        _set_out(w, code, plan, base, target, share, whole, live, hope, z)
+        closed, count, gap = close_lanes(w, code, plan, constants, base, live, z)
+        steps = steps + count
+        good = more(closed, half)
+        _keep(w, code, plan, base, good, z)
+        there = both(good, whole)
+        arrived = select(there, one, arrived)
+        # Longer ways after success, shorter after none, there without foretelling.
+        way = select(whole, left, reach)
+        longer = reach + reach
+        longer = select(more(longer, splat(LONGEST_WAY, z)), splat(LONGEST_WAY, z), longer)
+        shorter = select(more(hope, half), way, way * splat(0.25, z))
+        hope = select(good, one, select(more(live, half), z, hope))
+        reach = select(good, longer, shorter)
+        live = select(there, z, select(at_least(reach, splat(SHORTEST_WAY, z)), live, z))
+    return arrived, steps, gap
+
+
+@kernel
+def _distance(w: Slots, plan: Code, base: int, target: int, z: Lane) -> Lane:
+    """Largest change of what is given, from where the lane stands to what is asked for."""
+    here, most = _given_here(plan, base), z
+    for k in range(plan[c.INPUTS]):
+        change = absolute(load(w, target + k, z) - load(w, here + k, z))
+        # Not a number where either is none: nothing is near it then.
+        most = select(at_most(change, most), most, change)
+    return most
+
+
+@kernel
+def _given_here(plan: Code, base: int) -> int:
+    """Slot of what was given where the lane stands."""
+    return base + plan[c.STATE] + 2 * (plan[c.STATE_VALUES])
+
+
+@kernel
+def _set_out(
+    w: Slots, code: Code, plan: Code, base: int, target: int,
+    share: Lane, whole: Lane, live: Lane, hope: Lane, z: Lane,
+) -> None:  # fmt: skip
+    """What is given, and values to start from, a share of the way ahead; only in live lanes."""
+    count, values, inputs = plan[c.STATE_VALUES], base + code[t.VALUE_SLOT], plan[c.INPUTS]
+    moving, given = more(live, splat(0.5, z)), base + plan[c.INPUT]
+    saved = base + plan[c.STATE]
+    here = _given_here(plan, base)
+    along, length, size = z, z, z
+    for k in range(inputs):
+        there = load(w, target + k, z)
+        way = (there - load(w, here + k, z)) * share
+        last = load(w, here + inputs + k, z)
+        along, length, size = fma(way, last, along), fma(last, last, length), fma(way, way, size)
+        ahead = select(whole, there, load(w, here + k, z) + way)
+        store(w, given + k, select(moving, ahead, load(w, given + k, z)))
+    factor = along / length
+    # What is left of the way after the last one's direction is taken off: size - along^2 / length.
+    straight = at_most(fnma(factor, along, size), splat(STRAIGHT, z) * size)
+    usable = both(both(straight, more(hope, splat(0.5, z))), at_most(absolute(factor), splat(2.0, z)))
+    factor = select(usable, factor, z)
+    for k in range(count):
+        start = fma(factor, load(w, saved + count + k, z), load(w, saved + k, z))
+        store(w, values + k, select(moving, start, load(w, values + k, z)))
+    at = plan[c.QUATERNIONS]
+    for k in range(plan[at]):
+        _normalise(w, base + plan[at + 1 + k], moving, z)
+    at = plan[c.HELD]
+    for k in range(plan[at]):
+        store(w, base + plan[at + 1 + 2 * k], load(w, given + plan[at + 2 + 2 * k], z))
+
+
+@kernel
+def _normalise(w: Slots, slot: int, moving: Lane, z: Lane) -> None:
+    """A quaternion of length one."""
+    a, b, d, e = load(w, slot, z), load(w, slot + 1, z), load(w, slot + 2, z), load(w, slot + 3, z)
+    scale = select(moving, rsqrt(fma(a, a, fma(b, b, fma(d, d, e * e)))), splat(1.0, z))
+    store(w, slot, a * scale)
+    store(w, slot + 1, b * scale)
+    store(w, slot + 2, d * scale)
+    store(w, slot + 3, e * scale)
+
+
+@kernel
+def _keep(w: Slots, code: Code, plan: Code, base: int, good: Lane, z: Lane) -> None:
+    """Stand where closing succeeded, and remember the way there; elsewhere go back."""
+    count, values, inputs = plan[c.STATE_VALUES], base + code[t.VALUE_SLOT], plan[c.INPUTS]
+    _measure(w, plan, base, good, z)
+    saved, here, given = base + plan[c.STATE], _given_here(plan, base), base + plan[c.INPUT]
+    for k in range(count):
+        new, old = load(w, values + k, z), load(w, saved + k, z)
+        store(w, saved + count + k, select(good, new - old, load(w, saved + count + k, z)))
+        store(w, saved + k, select(good, new, old))
+    for k in range(inputs):
+        new, old = load(w, given + k, z), load(w, here + k, z)
+        store(w, here + inputs + k, select(good, new - old, load(w, here + inputs + k, z)))
+        store(w, here + k, select(good, new, old))
+
+
+@kernel
+def _measure(w: Slots, plan: Code, base: int, good: Lane, z: Lane) -> None:
+    """Values of joints that are not solved for, from where their frames are."""
+    at = plan[c.MEASURED] + 1
+    for _ in range(plan[plan[c.MEASURED]]):
+        value, one, two = base + plan[at + 1], base + plan[at + 2], base + plan[at + 3]
+        if plan[at] == c.PLACE:
+            x = load(w, two + 9, z) - load(w, one + 9, z)
+            y = load(w, two + 10, z) - load(w, one + 10, z)
+            v = load(w, two + 11, z) - load(w, one + 11, z)
+            for k in range(3):
+                offset = fma(load(w, one + k, z), x, fma(load(w, one + 3 + k, z), y, load(w, one + 6 + k, z) * v))
+                store(w, value + k, select(good, offset, load(w, value + k, z)))
+            value += 3
+        _read_turn(w, one, two, value, good, z)
+        at += 4
+
+
+@kernel
+def _product(w: Slots, one: int, two: int, z: Lane) -> Lane:
+    """Scalar product of two columns of rotations."""
+    return fma(load(w, one, z), load(w, two, z),
+               fma(load(w, one + 3, z), load(w, two + 3, z), load(w, one + 6, z) * load(w, two + 6, z)))  # fmt: skip
+
+
+@kernel
+def _read_turn(w: Slots, one: int, two: int, value: int, good: Lane, z: Lane) -> None:
+    """Quaternion of the turn from A to B, with the sign nearest to the one before.
+
+    Of the four ways to write it the one with the largest component loses no digits.
+    """
+    r00, r11, r22 = _product(w, one, two, z), _product(w, one + 1, two + 1, z), _product(w, one + 2, two + 2, z)
+    r01, r10 = _product(w, one, two + 1, z), _product(w, one + 1, two, z)
+    r02, r20 = _product(w, one, two + 2, z), _product(w, one + 2, two, z)
+    r12, r21 = _product(w, one + 1, two + 2, z), _product(w, one + 2, two + 1, z)
+    unit = splat(1.0, z)
+    trace = r00 + r11 + r22
+    a, b, d, e = unit + trace, r21 - r12, r02 - r20, r10 - r01
+    best = trace
+    better = more(r00, best)
+    a, b, d, e = (select(better, r21 - r12, a), select(better, unit + r00 - r11 - r22, b),
+                  select(better, r10 + r01, d), select(better, r02 + r20, e))  # fmt: skip
+    best = larger(r00, best)
+    better = more(r11, best)
+    a, b, d, e = (select(better, r02 - r20, a), select(better, r10 + r01, b),
+                  select(better, unit + r11 - r00 - r22, d), select(better, r21 + r12, e))  # fmt: skip
+    best = larger(r11, best)
+    better = more(r22, best)
+    a, b, d, e = (select(better, r10 - r01, a), select(better, r02 + r20, b),
+                  select(better, r21 + r12, d), select(better, unit + r22 - r00 - r11, e))  # fmt: skip
+    scale = rsqrt(fma(a, a, fma(b, b, fma(d, d, e * e))))
+    p, q, r, s = load(w, value, z), load(w, value + 1, z), load(w, value + 2, z), load(w, value + 3, z)
+    same = fma(a, p, fma(b, q, fma(d, r, e * s)))
+    scale = select(less(same, z), z - scale, scale)
+    store(w, value, select(good, a * scale, p))
+    store(w, value + 1, select(good, b * scale, q))
+    store(w, value + 2, select(good, d * scale, r))
+    store(w, value + 3, select(good, e * scale, s))
