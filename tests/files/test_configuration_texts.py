@@ -169,12 +169,13 @@ def test_bad_weights_texts(text: str, expected: str, mechanism: vc.Mechanism) ->
 
 
 def test_weights_files(mechanism: vc.Mechanism, tmp_path: Path) -> None:
-    file = write(tmp_path, "twist: [[2, 0], [0, 1]]\nrate: {a: 4}\nreciprocal: true\n", "w.yaml")
+    metric = np.diag([2.0, 1.0, 1.0, 3.0, 3.0, 3.0])
+    file = write(tmp_path, f"twist: {metric.tolist()}\nrate: {{a: 4}}\nreciprocal: true\n", "w.yaml")
     weights = read_weights(str(file), mechanism)
-    np.testing.assert_array_equal(weights.twist, [[2, 0], [0, 1]])
+    np.testing.assert_array_equal(weights.twist, metric)
     assert weights.reciprocal
     bad = write(tmp_path, "twist: [1, -1]\n", "w.yaml")
-    with pytest.raises(vc.FileError, match=r"w\.yaml:1:1: weight twist\[1\] is -1"):
+    with pytest.raises(vc.FileError, match=r"w\.yaml:1:8: twist: weight twist\[1\] is -1"):
         read_weights(str(bad), mechanism)
     bad = write(tmp_path, "rates: 1\ntwist: x\n", "w.yaml")
     with pytest.raises(vc.FileError, match="2 problems"):

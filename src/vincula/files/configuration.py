@@ -11,6 +11,7 @@ from vincula.files.digits import is_number
 from vincula.files.expressions import evaluate, is_expression
 from vincula.files.joint_values import JointValues
 from vincula.files.limits import DEFAULT_LIMITS, Limits
+from vincula.files.problems import shown
 from vincula.files.units import SI, Units
 from vincula.spatial.units import quantity
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
 
 _KEY: Final = "key:"
+_LONGEST: Final = 10_000
 _ASSIGNMENT: Final = re.compile(
     r"""\s*(?:"(?P<double>[^"]+)"|'(?P<single>[^']+)'|(?P<plain>[^"'=,\s][^=,]*?))\s*=\s*"""
     r"""(?P<value>\[[^\]]*\]|[^,\[\]=]+?)\s*(?:,|$)"""
@@ -93,16 +95,18 @@ def assignments(text: str) -> dict[str, list[str]]:
     """
     found: dict[str, list[str]] = {}
     text, at = text.strip(), 0
+    if len(text) > _LONGEST:
+        raise ModelError(f"cannot read {shown(text)}: longer than {_LONGEST} characters; put it in a file")
     while at < len(text) or not found:
         match = _ASSIGNMENT.match(text, at)
         if match is None:
             raise ModelError(
-                f"cannot read {text[at:].strip()!r}: expected name=value,name=value (several values in "
+                f"cannot read {shown(text[at:].strip())}: expected name=value,name=value (several values in "
                 "brackets, a name with a comma in quotes)"
             )
         name = match["double"] or match["single"] or match["plain"]
         if name in found:
-            raise ModelError(f"{name!r} is given twice")
+            raise ModelError(f"{shown(name)} is given twice")
         value = match["value"]
         separator = r"[\s,]+" if value.startswith("[") else r"\s+"
         words = [word for word in re.split(separator, value.strip("[]").strip()) if word]

@@ -41,6 +41,9 @@ _QUATERNIONS: Final = (
     | _ROOTS
 )
 
+_MOST_PARTS: Final = 1e9
+"""An angle of more parts of a turn is none; nothing is known about what it means."""
+
 
 @dataclass(frozen=True, slots=True)
 class Meant:
@@ -58,10 +61,12 @@ class Meant:
 def meant_angle(text: str, *, degrees: bool = False) -> Meant | None:
     """The multiple of pi/12 (15 degrees) that a typed angle means; None where it is taken as it is."""
     value, part = float(text), 15.0 if degrees else math.pi / _PARTS_OF_A_TURN
+    if not abs(value) < _MOST_PARTS * part:
+        return None
     count = round(value / part)
     target = count * 15.0 if degrees else math.pi * count / _PARTS_OF_A_TURN
     away = abs(value - target)
-    if away <= _SAME * part or not math.isfinite(value):
+    if away <= _SAME * part:
         return None
     if count == 0:
         return Meant(0.0, "0") if away <= (math.degrees(NOTHING) if degrees else NOTHING) else None

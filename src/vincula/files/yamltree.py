@@ -61,11 +61,12 @@ class _Reader:
         self._open_anchors: set[str] = set()
 
     def _stream(self, text: str) -> Iterator[Event]:
-        from ruamel.yaml import YAML
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
+        from vincula.files.yamlscanner import yaml_events
+
         try:
-            yield from YAML(typ="safe", pure=True).parse(text)
+            yield from yaml_events(text)
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)

@@ -89,7 +89,7 @@ def test_weights_of_names_that_do_not_exist_are_refused() -> None:
 
 
 def test_a_motor_on_several_axes_has_the_limits_of_its_axes() -> None:
-    """Its rate is reached with every axis at its limit; its torque is that which takes a first one to its own."""
+    """Its rate is reached with every axis at its limit; its torque takes the first of them to its own."""
     linkage = limited(o1=Limits(rate=2.0, effort=10.0), o5=Limits(rate=4.0, effort=5.0))
     both = replace(linkage, drives=(vc.Drive("both", {"o1": 0.5, "o5": -2.0}),)).with_active(["both"])
     weights = weights_from_limits(both)
