@@ -105,8 +105,11 @@ def _free_name(mechanism: Mechanism, wanted: str) -> str:
 
 
 def _floating(mechanism: Mechanism, body: str) -> set[str]:
-    """Free joints between the old ground and the new one: they constrain nothing."""
-    return {j.name for j in mechanism.joints if j.type == "free" and {j.first, j.second} == {GROUND, body}}
+    """Free joints that constrain nothing: to the new ground, or the only part that touches the old one."""
+    free = {j.name for j in mechanism.joints if j.type == "free" and GROUND in (j.first, j.second)}
+    if len(free) == 1 and not _old_ground_needed(mechanism, free):
+        return free
+    return {name for name in free if body in (mechanism.joint[name].first, mechanism.joint[name].second)}
 
 
 def _old_ground_needed(mechanism: Mechanism, dropped: set[str]) -> bool:

@@ -101,7 +101,7 @@ def classified(
     state: Vector,
     watch: Watch,
     kernel: Matrix,
-    direction: Vector,
+    lost: Matrix,
     motors: tuple[str, ...],
 ) -> Singularity:
     """The singularity of a block at a state.
@@ -111,13 +111,13 @@ def classified(
         state: The singular state.
         watch: The block.
         kernel: Orthonormal basis of its kernel there.
-        direction: The unit vector in it that is free at this state alone.
+        lost: Orthonormal directions in it that are free at this state alone.
         motors: Axes and drives that count as motors.
     """
     where = problem.variables
     outside = problem.rates_outside(state)
     everything = np.vstack([np.eye(problem.columns), *outside.values()])[:, watch.columns]
-    full = _without_idle(everything, kernel, direction)
+    full = _without_idle(everything, kernel, lost)
     places = dict(where.columns_of)
     start = problem.columns
     for name, rates in outside.items():
@@ -125,7 +125,7 @@ def classified(
         start += len(rates)
     shares = {name: float(np.linalg.norm(full[place])) for name, place in places.items()}
     part = shares.pop(MEMBER, 0.0)
-    moving = {name: abs(float(full[where.column[name]])) for name in motors}
+    moving = {name: float(np.linalg.norm(full[where.column[name]])) for name in motors}
     driven = float(np.linalg.norm(list(moving.values())))
     kind: SingularityKind = "internal"
     if watch.name == "motors locked" and not negligible(part, 1.0, SHARE):
@@ -144,17 +144,18 @@ def _named(shares: Mapping[str, float]) -> dict[str, float]:
     return dict(sorted(named, key=lambda item: -item[1]))
 
 
-def _without_idle(everything: Matrix, kernel: Matrix, direction: Vector) -> Vector:
-    """Rates of all joints in a singular direction, at right angles to those that are always free.
+def _without_idle(everything: Matrix, kernel: Matrix, lost: Matrix) -> Matrix:
+    """Rates of all joints in the singular directions, at right angles to those that are always free.
 
-    A rod that spins about itself everywhere has no part in it, whichever of its joints closes the loop.
+    A rod that spins about itself everywhere has no part in them, whichever of its joints closes the
+    loop.  Several directions count alike; the squares of all entries add up to one.
     """
-    along = kernel.T @ direction
-    idle = everything @ kernel @ svd(along[None, :])[2][:, 1:]
-    full = everything @ direction
+    count = lost.shape[1]
+    idle = everything @ kernel @ svd(lost.T @ kernel)[2][:, count:]
+    full = everything @ lost
     if idle.shape[1]:
         full = full - idle @ np.linalg.lstsq(idle, full, rcond=None)[0]
-    return np.asarray(full / np.linalg.norm(full))
+    return np.asarray(np.linalg.qr(full)[0] / np.sqrt(count))
 
 
 def _neighbours(
@@ -180,22 +181,23 @@ def _neighbours(
 
 def _lost_direction(
     jacobian: Matrix, residual: float, watch: Watch, around: list[tuple[Matrix, bool]]
-) -> tuple[Matrix, Vector] | None:
-    """The kernel, and its direction that is constrained near by; None at a regular block."""
+) -> tuple[Matrix, Matrix] | None:
+    """The kernel, and its directions that are constrained near by; None at a regular block."""
     _, values, right = svd(jacobian)
     rank = decided(jacobian, residual, values).rank
     kernel = right[:, rank:]
-    bases = []
+    bases, generic = [], rank
     for other, away in around:
         if not away:
-            return (kernel, kernel[:, 0]) if watch.name == "loops" and kernel.shape[1] else None
+            return (kernel, kernel[:, :1]) if watch.name == "loops" and kernel.shape[1] else None
         block = other[:, watch.columns]
-        generic = decided(block, 0.0).rank
-        if generic > rank:
-            bases.append(svd(block)[2][:, generic:])
+        found = decided(block, 0.0).rank
+        if found > rank:
+            generic = max(generic, found)
+            bases.append(svd(block)[2][:, found:])
     if not bases:
         return None
-    return kernel, beyond(kernel, bases)
+    return kernel, beyond(kernel, bases, generic - rank)
 
 
 def _distinct(found: list[Singularity]) -> tuple[Singularity, ...]:

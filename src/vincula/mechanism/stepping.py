@@ -270,7 +270,9 @@ class Stepper:
         if measure.right.shape[1] > rank:
             chord = track.step_between(here.point, there.point)
             around = kernels_beside(track, point, chord / np.linalg.norm(chord), watch.columns, rank)
-        one = classified(self.problem, point.state, watch, *measure.lost(around), self.motors)
+        here_rank = decided(measure.jacobian, point.residual, measure.values).rank
+        lost = measure.lost(around, here_rank)
+        one = classified(self.problem, point.state, watch, *lost, self.motors)
         turns = bool(np.array_equal(watch.columns, track.free)) and float(there.tangent[-1]) <= 0.0
         return Found("singularity", point, share, (one,), turns=turns)
 

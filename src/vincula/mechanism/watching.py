@@ -81,35 +81,37 @@ class Measure:
         reduced = before.left[:, :r].T @ self.jacobian @ before.right[:, :r]
         return float(np.linalg.slogdet(reduced)[0]) or 1.0
 
-    def lost(self, around: Sequence[Matrix]) -> tuple[Matrix, Vector]:
-        """The kernel where the smallest kept value vanishes, and the direction that is new in it.
+    def lost(self, around: Sequence[Matrix], rank: int) -> tuple[Matrix, Matrix]:
+        """The kernel where kept values vanish, and the directions that are new in it.
 
-        There it cannot be told from what is never constrained (a rod that spins about its own axis)
-        by singular values: it is what the kernels around do not hold.
+        There they cannot be told from what is never constrained (a rod that spins about its own axis)
+        by singular values: they are what the kernels around do not hold.
 
         Args:
             around: Orthonormal bases of the kernels at regular points near by, evenly about this one, so
                 that what is linear in their distance cancels; none where nothing is generically free.
+            rank: The rank here, below the generic one.
         """
-        kernel = self.right[:, self.rank - 1 :]
-        if kernel.shape[1] == 1 or not around:
-            return kernel, np.asarray(kernel[:, 0])
-        return kernel, beyond(kernel, around)
+        kernel = self.right[:, min(rank, self.rank - 1) :]
+        count = self.rank - min(rank, self.rank - 1)
+        if kernel.shape[1] == count or not around:
+            return kernel, kernel[:, :count]
+        return kernel, beyond(kernel, around, count)
 
 
-def beyond(kernel: Matrix, others: Sequence[Matrix]) -> Vector:
-    """Unit vector of a kernel that is least in other kernels, on the average of them.
+def beyond(kernel: Matrix, others: Sequence[Matrix], count: int) -> Matrix:
+    """Orthonormal directions of a kernel that are least in other kernels, on the average of them.
 
     Args:
         kernel: Orthonormal basis.
         others: Orthonormal bases of smaller kernels.
+        count: How many directions.
     """
     inside = np.zeros((kernel.shape[1], kernel.shape[1]))
     for other in others:
         shared = other.T @ kernel
         inside += shared.T @ shared
-    direction: Vector = kernel @ np.linalg.eigh(inside)[1][:, 0]
-    return direction / np.linalg.norm(direction)
+    return np.asarray(kernel @ np.linalg.eigh(inside)[1][:, :count])
 
 
 def measured(jacobian: Matrix, rank: int) -> Measure:

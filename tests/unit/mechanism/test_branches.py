@@ -187,5 +187,6 @@ def test_a_floating_base_that_becomes_the_ground_drops_its_free_joint() -> None:
     assert list(seen.body) == ["leg"]
     assert seen.reference is None
     assert seen.with_ground("ground") is seen
+    assert list(robot.with_ground("leg").body) == ["trunk"], "nor does it float beside any other body"
     with pytest.raises(vc.UnknownNameError, match="did you mean 'trunk'"):
         robot.with_ground("trunc")

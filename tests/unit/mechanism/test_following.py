@@ -256,3 +256,28 @@ def test_a_rod_that_spins_has_no_part_in_a_singularity() -> None:
     expected = {"crank": 1.0, "near": np.linalg.norm(swing - turn), "far": np.linalg.norm(swing)}
     size = math.sqrt(sum(value**2 for value in expected.values()))
     assert found.joints == pytest.approx({name: value / size for name, value in expected.items()}, abs=1e-6)
+
+
+def test_two_motors_that_lose_authority_at_once_are_both_named() -> None:
+    """Two equal legs stretch together: no combination of the two motors is preferred."""
+    mechanism = vc.Mechanism.planar(
+        joints=[
+            vc.Revolute("left", "ground", "left_arm", at=(-1, 0)),
+            vc.Revolute("left_knee", "left_arm", "left_rod", at=(-2, 1)),
+            vc.Revolute("left_hand", "left_rod", "plate", at=(-1, 2)),
+            vc.Revolute("right_hand", "plate", "right_rod", at=(1, 2)),
+            vc.Revolute("right_knee", "right_rod", "right_arm", at=(2, 1)),
+            vc.Revolute("right", "right_arm", "ground", at=(1, 0)),
+        ],
+        reference=vc.Reference("plate", origin=(0, 2)),
+        active=["left", "right"],
+    )
+    path = mechanism.follow([vc.Pose.at((0.0, 4.0))])
+    assert path.stopped is not None
+    (found,) = (s for s in path.stopped.singularities if s.kind == "motors without authority")
+    assert set(found.motors) == {"left", "right"}
+    for name in ("", "_knee", "_hand"):
+        assert found.joints[f"left{name}"] == pytest.approx(found.joints[f"right{name}"], abs=1e-6)
+    poses = mechanism.body_poses(path.end)
+    height = poses["plate"].apply(np.array([0.0, 2.0]))[1]
+    assert height == pytest.approx(2.0 * math.sqrt(2.0), abs=1e-8)
