@@ -11,6 +11,8 @@ import pytest
 import vincula as vc
 from vincula.files.save import Saved, save
 
+ROBOTS = {"mjcf": ".xml", "sdf": ".sdf", "urdf-plus": ".urdf", "urdf-gepetto": ".urdf"}
+"""The formats of robot files that can be written, and how their names end."""
 COUNTS = ("ar", "pr", "oi", "t", "ap", "ao", "po")
 ELLIPSOIDS = ("kinematic", "active_force", "passive_force", "dual_force")
 

@@ -126,7 +126,8 @@ def test_a_guarded_process_cannot_reach_out(tmp_path: Path) -> None:
         "os.fork()",
     ):
         script = (
-            f"import sys, os, socket, subprocess; sys.path.append({folder!r}); from xacro_child import Guard\n"
+            f"import sys, os, socket, subprocess; sys.path.append({folder!r})\n"
+            "from xacro_child import Guard\n"
             f"sys.addaudithook(Guard([{str(tmp_path)!r}]))\n"
             f"try:\n    {attempt}\nexcept BaseException as e:\n    print(type(e).__name__)\n"
         )
