@@ -82,7 +82,7 @@ class UnknownNameError(ModelError):
 
     def __init__(self, kind: str, name: str, choices: Iterable[str]) -> None:
         self.kind, self.name, self.choices = kind, name, tuple(choices)
-        near = difflib.get_close_matches(name, self.choices, n=3)
+        near = difflib.get_close_matches(name, self.choices, n=3) if isinstance(name, str) else []
         hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else "."
         super().__init__(f"no {kind} is named {name!r}{hint} Known: {listing(self.choices)}")
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from vincula.errors import FileError, UnknownNameError, listing
+from vincula.errors import FileError, ModelError, UnknownNameError, listing
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.packages import Packages
 from vincula.files.problems import shown
@@ -72,6 +72,10 @@ def load_with_report(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
 ) -> tuple[Mechanism, LoadReport]:
     """As `load`, with the report of everything used, ignored and repaired."""
+    if not isinstance(path, str | os.PathLike):
+        raise ModelError(f"load: got {path!r}, expected a path or example:NAME")
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise ModelError(f"load: parameters: got {parameters!r}, expected numbers by name, {{'l': 0.5}}")
     file, settings = os.fspath(path), dict(parameters or {})
     if file.startswith(EXAMPLE):
         if beside:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from vincula.mechanism.drawing import Contact, Drawing, DrawnBody, DrawnJoint, Reference
+from vincula.mechanism.kinds import refuse_other_kinds
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import Coupling, Drive, _All
 from vincula.spatial.space import Space
@@ -26,6 +27,14 @@ def draw(
     name: str,
 ) -> Mechanism:
     """A mechanism from drawn parts; see `Mechanism.planar` and `Mechanism.spatial`."""
+    lists = {
+        "joints": joints,
+        "contacts": contacts,
+        "couplings": couplings,
+        "drives": drives,
+        "bodies": bodies,
+    }
+    refuse_other_kinds(lists, reference, weights)
     drawing = Drawing(space)
     drawing.add(bodies=bodies, joints=joints, contacts=contacts)
     mechanism = Mechanism(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vincula.arrays import Vector, checked
-from vincula.errors import DuplicateNameError, TopologyError, UnknownNameError
+from vincula.errors import DuplicateNameError, ModelError, TopologyError, UnknownNameError
 from vincula.mechanism.parts import GROUND, ContactPart, Joint, _All
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def resolve_motors(mechanism: Mechanism, names: Iterable[str] | str | _All) -> t
         return free_axes(mechanism)
     drives = {drive.name for drive in mechanism.drives}
     result: list[str] = []
-    for name in split_names(names) if isinstance(names, str) else names:
+    for name in split_names(names) if isinstance(names, str) else _listed(names):
         if name in drives:
             found: tuple[str, ...] = (name,)
         elif name in mechanism.motors:
@@ -61,9 +61,18 @@ def resolve_motors(mechanism: Mechanism, names: Iterable[str] | str | _All) -> t
 def resolve_axes(mechanism: Mechanism, names: Iterable[str] | str) -> tuple[str, ...]:
     """Axis names for joint and axis names; each once, in the order given."""
     found: list[str] = []
-    for name in split_names(names) if isinstance(names, str) else names:
+    for name in split_names(names) if isinstance(names, str) else _listed(names):
         found.extend(_axes_of(mechanism, name, "joint or axis", ()))
     return tuple(dict.fromkeys(found))
+
+
+def _listed(names: object) -> list[str]:
+    listed: list[str] = []
+    for name in names if isinstance(names, Iterable) else [names]:
+        if not isinstance(name, str):
+            raise ModelError(f"got {name!r}, expected names of joints, axes or motors, or vc.ALL")
+        listed.append(name)
+    return listed
 
 
 def _axes_of(mechanism: Mechanism, name: str, kind: str, also: Iterable[str]) -> tuple[str, ...]:
