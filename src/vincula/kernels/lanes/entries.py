@@ -16,20 +16,33 @@ import llvmlite
 import numba
 
 from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.angles import measure, rotate_all
+from vincula.kernels.lanes.certificates import certain_ranks, certify_twists
 from vincula.kernels.lanes.dense import dense_matrix
-from vincula.kernels.lanes.jit import Code, Slots
+from vincula.kernels.lanes.elimination import eliminate
+from vincula.kernels.lanes.frames import place_all
+from vincula.kernels.lanes.gaps import note_gaps
+from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
+from vincula.kernels.lanes.relation import relate
+from vincula.kernels.lanes.results import finish, write
+from vincula.kernels.lanes.rows import slopes
 from vincula.kernels.lanes.vector import zero_of
 from vincula.kernels.lanes.workspace import aligned, enter
 
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
-@lru_cache(maxsize=1)
-def fingerprint() -> str:
-    """A digest of all kernel sources and of the compiler's version."""
+@lru_cache(maxsize=4)
+def fingerprint(without: str = "?") -> str:
+    """A digest of kernel sources and of the compiler's version.
+
+    Args:
+        without: Sources whose names begin like this are left out.
+    """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.read_bytes())
+        if not path.name.startswith(without):
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -44,7 +57,7 @@ def lanes_of_this_machine() -> int:
 @lru_cache(maxsize=4)
 def dense_entry(width: int) -> Any:
     """Whole matrices: (values, code, constants, base, columns, slots, out), out N x m x (n + d)."""
-    zero, stamp = zero_of(width), fingerprint()
+    zero, stamp = zero_of(width), fingerprint("closing")
 
     @numba.njit(**_OPTIONS)
     def run(
@@ -61,6 +74,42 @@ def dense_entry(width: int) -> Any:
                 for c in range(n):
                     for r in range(m):
                         out[block * width + lane, r, c] = w[(target + c * m + r) * width + lane]
+        return stamp
+
+    return run
+
+
+@kernel
+def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, z: Lane) -> None:
+    """Everything for one block of configurations whose values are in the workspace."""
+    place_all(w, code, constants, base, z)
+    slopes(w, code, constants, base, z)
+    eliminate(w, code, constants, base, z)
+    note_gaps(w, code, constants, base, z)
+    certify_twists(w, code, base, z)
+    certain = certain_ranks(w, code, constants, base, z)
+    relate(w, code, constants, base, z)
+    settled = rotate_all(w, code, base, z)
+    size = code[t.MOTORS] + code[t.TWIST]
+    measure(w, base + code[t.MOTIONS], base + code[t.SQUARES], code[t.FREEDOM], code[t.MOTORS], size, z)
+    finish(w, code, constants, base, certain, settled, want, z)
+
+
+@lru_cache(maxsize=4)
+def spectra_entry(width: int) -> Any:
+    """Spectra: (values, code, constants, base, want, first, last, out) for blocks first ... last - 1."""
+    zero, stamp = zero_of(width), fingerprint("closing")
+
+    @numba.njit(**_OPTIONS)
+    def run(
+        values: Slots, code: Code, constants: Slots, base: int, want: int, first: int, last: int, out: Slots
+    ) -> str:
+        z = zero()
+        w = aligned(base + code[t.TOTAL], width)
+        for block in range(first, last):
+            enter(w, code, constants, base, values, block, width, z)
+            spectra(w, code, constants, base, want, z)
+            write(w, base + code[t.OUTPUT], out.shape[1], out, block * width, width)
         return stamp
 
     return run

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Code = NDArray[np.int64]
 """A mechanism as whole numbers."""
 
-HEADER: Final = 32
+HEADER: Final = 64
 """Entries before the first table."""
 
 # Sizes
@@ -127,3 +127,94 @@ BEYOND: Final = 3
 """The offset's components, and the angle of z to an axis of B; constants: axis, cosine, 1 / sine."""
 BALANCE: Final = 4
 """A coupling: entries are where its terms are in `code`, and the constant that scales its residual."""
+
+# The plan: how passive joints are eliminated and the relation is built, see `plan`
+FRONTS: Final = 32
+"""Number of fronts."""
+FRONT: Final = 33
+"""Fronts of `FRONT_ENTRY` entries each, children before parents."""
+LIMBS: Final = 34
+"""Number of limbs."""
+LIMB: Final = 35
+"""Limbs of `LIMB_ENTRY` entries each."""
+BUFFER: Final = 36
+"""Slot of the matrix that is being eliminated."""
+FACTORS: Final = 37
+"""Slot of the factors of its reflections, three each."""
+VECTOR: Final = 38
+"""Slot of a vector as long as any side of any matrix."""
+STACK: Final = 39
+"""Slot of a matrix of d columns, one row a reduced row."""
+BASIS: Final = 40
+"""Slot of U, d rows of at most `WIDEST` entries: twists in terms of the motions left so far."""
+WIDEST: Final = 41
+"""Most motions left at any time."""
+MOTIONS: Final = 42
+"""Slot of the motions (q_a, u), n_a + d entries each, orthonormal in the metrics."""
+SQUARES: Final = 43
+"""Slot of two squared lengths a motion."""
+FREEDOM: Final = 44
+"""Number of motions k."""
+FREE: Final = 45
+"""How many of them the motors do not drive: infinite efficiencies."""
+IDLE: Final = 46
+"""How many of them leave the member at rest: efficiencies zero."""
+METRIC: Final = 47
+"""Constants: n_a + d factors from lengths in the metrics to scaled rates and twists, then as many for the
+results that are motions, and for those that are efforts."""
+REDUCED: Final = 48
+"""Number of reduced rows M."""
+OBJECT_RANK: Final = 49
+"""Rank of the twist columns of the reduced rows."""
+OBJECT_ORDER: Final = 50
+"""Order of those columns, independent ones first."""
+REST_ROWS: Final = 51
+"""Rows left by motors when twists come after them."""
+REST_RANK: Final = 52
+"""Their rank."""
+REST_ORDER: Final = 53
+"""Order of their columns."""
+NOTES: Final = 54
+"""Slot of what is noted on the way: see the names below."""
+DOUBT: Final = 55
+"""Constants: rounding, digits and tolerance together; rounding alone; factor from residual to rho."""
+OUTPUT: Final = 56
+"""Slot of the results."""
+TOTAL: Final = 57
+"""Slots altogether."""
+
+# Notes, slots from `NOTES` on
+NORM: Final = 0
+"""Squared norm of A."""
+TRAIL: Final = 1
+"""Largest squared norm of what should be zero by the ranks of the plan."""
+PASSIVE_INVERSE: Final = 2
+"""Largest squared norm of an inverse: passive columns of one limb."""
+DRIVEN_INVERSE: Final = 3
+"""The same for passive and active columns of one limb."""
+OBJECT_INVERSE: Final = 4
+"""For the twist columns of the reduced rows."""
+REST_INVERSE: Final = 5
+"""For the twist columns of the rows that motors leave."""
+RESIDUAL: Final = 6
+"""Squared largest gap."""
+LIMB_INVERSE: Final = 7
+"""Squared norm of the inverse so far in the limb at hand."""
+LIMB_NORM: Final = 8
+"""Squared norm of the rows of the limb at hand."""
+REACHED: Final = 9
+"""Squared distance of the farthest joint from the reference point."""
+NOTE_COUNT: Final = 10
+
+# A front: rows, pivots, their rank, other columns, rows handed on, mode, member, slot of what is handed on
+# (row after row), blocks (place, number), columns (place), children (place, number), order (place),
+# reflections, limb
+FRONT_ENTRY: Final = 16
+BY_LEFT: Final = 0
+"""Rows handed on are products with left null vectors."""
+BY_REFLECTION: Final = 1
+"""Rows handed on are reflected until they are triangular; what is below is zero."""
+
+# A limb: slot of its reduced rows, their number, motors (number, place), rank of the motors' columns, order
+# of those columns, rank against the limbs before, order of its rows, slot of its reflections, motions before
+LIMB_ENTRY: Final = 10

@@ -1,0 +1,110 @@
+"""Cosines and sines of the motions by one-sided Jacobi rotations, in lanes.
+
+The columns (q; u) are orthonormal; rotating them until their lower parts are mutually orthogonal makes
+the upper parts orthogonal too.  Every rotation is computed from whichever part of its pair is smaller, so
+tiny cosines and tiny sines stay accurate.  Columns end up with the longest twist first.
+"""
+
+from __future__ import annotations
+
+from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
+from vincula.kernels.lanes.vector import (
+    absolute,
+    at_most,
+    both,
+    either,
+    fma,
+    fnma,
+    less,
+    load,
+    more,
+    neg,
+    rsqrt,
+    select,
+    some_lane,
+    splat,
+    store,
+)
+
+SWEEPS = 16
+"""At most so many rounds over all pairs; six or seven are usual."""
+ORTHOGONAL = 1e-29
+"""Squared cosine below which two columns count as orthogonal."""
+NOTHING = 1e-290
+
+
+@kernel
+def rotate_all(w: Slots, code: Code, base: int, z: Lane) -> bool:
+    """Rotate all pairs until none changes; whether that was reached."""
+    k, motors, size = code[t.FREEDOM], code[t.MOTORS], code[t.MOTORS] + code[t.TWIST]
+    first, squares = base + code[t.MOTIONS], base + code[t.SQUARES]
+    for _ in range(SWEEPS):
+        measure(w, first, squares, k, motors, size, z)
+        changed = False
+        for p in range(k - 1):
+            for q in range(p + 1, k):
+                a, b = first + p * size, first + q * size
+                if _rotate(w, a, b, squares + 2 * p, squares + 2 * q, motors, size, z):
+                    changed = True
+        if not changed:
+            return True
+    return bool(k < 2)
+
+
+@kernel
+def measure(w: Slots, first: int, squares: int, k: int, motors: int, size: int, z: Lane) -> None:
+    """Squared lengths of both parts of every column: motors, twist."""
+    for p in range(k):
+        a = first + p * size
+        own = z
+        for i in range(motors):
+            x = load(w, a + i, z)
+            own = fma(x, x, own)
+        store(w, squares + 2 * p, own)
+        own = z
+        for i in range(motors, size):
+            x = load(w, a + i, z)
+            own = fma(x, x, own)
+        store(w, squares + 2 * p + 1, own)
+
+
+@kernel
+def _rotate(w: Slots, a: int, b: int, of_a: int, of_b: int, motors: int, size: int, z: Lane) -> bool:
+    """One rotation of columns a and b; whether any lane needed it."""
+    inner_q, inner_u = z, z
+    for i in range(motors):
+        inner_q = fma(load(w, a + i, z), load(w, b + i, z), inner_q)
+    for i in range(motors, size):
+        inner_u = fma(load(w, a + i, z), load(w, b + i, z), inner_u)
+    a_q, a_u = load(w, of_a, z), load(w, of_a + 1, z)
+    b_q, b_u = load(w, of_b, z), load(w, of_b + 1, z)
+    by_twist = less(a_u + b_u, a_q + b_q)
+    inner = select(by_twist, inner_u, neg(inner_q))
+    gap = select(by_twist, b_u - a_u, a_q - b_q)
+    product = select(by_twist, a_u * b_u, a_q * b_q)
+    skew = more(inner * inner, splat(ORTHOGONAL, z) * product)
+    if not some_lane(either(skew, more(gap, z))):
+        return False
+    twice = inner + inner
+    radius = fma(gap, gap, twice * twice)
+    inverse = rsqrt(radius)
+    skew = both(skew, more(radius, splat(NOTHING, z)))
+    half = splat(0.5, z)
+    square = fma(absolute(gap) * half, inverse, half)
+    root = rsqrt(square)
+    cosine = select(skew, square * root, splat(1.0, z))
+    sine = select(skew, half * twice * inverse * root, z)
+    tangent = sine * root
+    # The longer twist comes first: where b has it, the pair is exchanged as well.
+    stay = at_most(gap, z)
+    c, s = select(stay, cosine, sine), select(stay, neg(sine), neg(cosine))
+    for i in range(size):
+        x, y = load(w, a + i, z), load(w, b + i, z)
+        store(w, a + i, fnma(s, y, c * x))
+        store(w, b + i, fma(s, x, c * y))
+    store(w, of_a + 1, fma(tangent, inner_u, select(stay, a_u, b_u)))
+    store(w, of_b + 1, fnma(tangent, inner_u, select(stay, b_u, a_u)))
+    store(w, of_a, fma(tangent, inner_q, select(stay, a_q, b_q)))
+    store(w, of_b, fnma(tangent, inner_q, select(stay, b_q, a_q)))
+    return True
