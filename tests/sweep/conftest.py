@@ -19,7 +19,11 @@ Files = dict[str, bytes]
 
 def files_of(folder: Path) -> Files:
     """Every file below a folder with its content."""
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 def beside(folder: Path) -> list[str]:

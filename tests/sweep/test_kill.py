@@ -1,4 +1,4 @@
-"""kill -9 at any moment: what was recorded stays, and the finished data set is the undisturbed one, bit for bit.
+"""kill -9 at any moment: what was recorded stays, and the data set is the undisturbed one, bit for bit.
 
 The number of kills is small here; VINCULA_KILLS=200 is the whole promise.
 """
@@ -10,6 +10,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,10 @@ def test_parent_killed_at_random_moments(
     while killed < KILLS:
         target = tmp_path / f"{rounds}.zarr"
         more, _ = kill_until_done(
-            lambda: sweep.run(target, threads=1, resume=True), rng, min(6, KILLS - killed), longest  # noqa: B023
+            partial(sweep.run, target, threads=1, resume=True),
+            rng,
+            min(6, KILLS - killed),
+            longest,
         )
         killed += more
         rounds += 1
@@ -73,7 +77,7 @@ def test_workers_killed_at_random_moments(
         rounds += 1
         complete = False
         while not complete:
-            child = run_in_child(lambda: sweep.run(target, jobs=2, resume=True))  # noqa: B023
+            child = run_in_child(partial(sweep.run, target, jobs=2, resume=True))
             with process_group(child):
                 while ended(child, float(rng.uniform(0.0, 1.2))) is None:
                     workers = children_of(child)

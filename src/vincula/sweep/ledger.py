@@ -100,7 +100,7 @@ class Ledger:
             except BaseException:
                 self._base.close()
                 raise
-        except (sqlite3.Error, OSError) as error:
+        except (sqlite3.Error, OSError, UnicodeError) as error:
             raise self._damaged(str(error)) from None
 
     @staticmethod
@@ -246,7 +246,7 @@ class Ledger:
     def _believed(self) -> Iterator[None]:
         try:
             yield
-        except sqlite3.DatabaseError as error:
+        except (sqlite3.DatabaseError, UnicodeError) as error:
             raise self._damaged(str(error)) from None
 
     def _damaged(self, reason: str) -> SweepError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import shutil
 import signal
@@ -85,6 +84,8 @@ def run(
     if shard is not None:
         _refuse_bad_share(shard, sweep.chunking.count)
         places = places.shard(shard)
+    if not places.data.parent.is_dir():
+        raise SweepError(f"{places.data.parent}: there is no such folder", kind="usage")
     try:
         with SweepLock(places.lock, places.data):
             room = StorageRoom(places.data)
@@ -136,9 +137,6 @@ def _opened(
             f"{places.data}: there is something already that is no sweep of vincula; choose another output",
             kind="usage",
         )
-    with contextlib.suppress(FileNotFoundError):
-        if not places.data.parent.is_dir():
-            raise SweepError(f"{places.data.parent}: there is no such folder", kind="usage")
     return Ledger.create(places.ledger, {**manifest, "source": dict(sweep.source)})
 
 

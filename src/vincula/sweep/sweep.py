@@ -43,8 +43,9 @@ class Sweep:
     Args:
         mechanism: The mechanism, a function of parameters that makes it, or a compiled one.
         over: Where to go: `Grid`, `Polyline`, `RandomPoints`, `LowDiscrepancyPoints`, `PointTable`, or
-            values by variable for a grid.  Variables are motors, joints or axes by name, components of the reference member's
-            pose (`reference.x` ... `reference.yaw`, in the plane `reference.angle`), and parameters [m, rad].
+            values by variable for a grid.  Variables are motors, joints or axes by name, components of the
+            reference member's pose (`reference.x` ... `reference.yaw`, in the plane `reference.angle`), and
+            parameters [m, rad].
         quantities: What to compute, by name (see `vincula.compile(...).quantities`).
         given: What the points are: `motors` and `reference` close the loops for motor values or a pose,
             `configuration` takes joint values as they are.  By default poses where a component of
