@@ -168,3 +168,18 @@ MJCF = """<mujoco>
   <equality><connect name="o3" body1="coupler" body2="rocker" anchor="2 1 0"/></equality>
   <actuator><motor name="m1" joint="o1"/></actuator>
 </mujoco>"""
+
+MJCF_WELD = (
+    MJCF.replace(
+        '<joint name="o2" axis="0 0 1"/></body>',
+        """<joint name="o2" axis="0 0 1"/>
+        <body name="pin" pos="2 1 0"><joint name="o3" axis="0 0 1"/><site name="pin"/></body></body>""",
+    )
+    .replace(
+        '<joint name="o4" axis="0 0 1"/>', '<joint name="o4" axis="0 0 1"/><site name="hole" pos="-1 2 0"/>'
+    )
+    .replace(
+        '<connect name="o3" body1="coupler" body2="rocker" anchor="2 1 0"/>',
+        '<weld site1="pin" site2="hole"/>',
+    )
+)

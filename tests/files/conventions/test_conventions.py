@@ -83,8 +83,10 @@ def test_four_bar_in_mjcf_and_in_space(tmp_path: Path, four_bar_numbers: dict[st
     spatial = vc.load(written(tmp_path, "spatial.yaml", four_bar.NATIVE_SPATIAL))
     same(numbers(spatial, "coupler", [1.0, 1.5, 0.0], ["o1"]), four_bar_numbers)
     pytest.importorskip("mujoco")
-    robot = vc.load(written(tmp_path, "robot.xml", four_bar.MJCF))
-    same(numbers(robot, "coupler", [1.0, 0.5, 0.0], ["o1"]), four_bar_numbers)
+    for text in (four_bar.MJCF, four_bar.MJCF_WELD):
+        robot = vc.load(written(tmp_path, "robot.xml", text))
+        same(numbers(robot, "coupler", [1.0, 0.5, 0.0], ["o1"]), four_bar_numbers)
+        assert robot.residuals()[0].gap < 1e-12
 
 
 def test_a_distance_is_a_rod_that_cannot_spin(tmp_path: Path, four_bar_numbers: dict[str, Any]) -> None:
@@ -111,13 +113,28 @@ def test_five_bar_in_the_dialects_of_urdf(
     assert sum(count["ignored"] for count in report.counts().values()) == 0
 
 
-def test_five_bar_in_sdf(tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
-    robot = vc.load(written(tmp_path, "model.sdf", five_bar.SDF))
+def test_five_bar_with_a_gepetto_file(tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
+    tree = five_bar.TREE[: five_bar.TREE.index("  <transmission")]
+    robot = vc.load(written(tmp_path, "five.urdf", urdf(tree + five_bar.GEPETTO_TREE), five_bar.GEPETTO))
     assert robot.active == ("o1", "o4")
     same(numbers(robot, "coupler", [0.5, 0.0, 0.0], ["o1", "o4"]), five_bar_numbers)
 
 
-def test_five_bar_in_mjcf(tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
+def test_five_bar_in_space(tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
+    spatial = vc.load(written(tmp_path, "spatial.yaml", five_bar.NATIVE_SPATIAL))
+    same(numbers(spatial, "coupler", [-0.5, 0.0, 0.0], ["o1", "o4"]), five_bar_numbers)
+
+
+@pytest.mark.parametrize("text", [five_bar.SDF, five_bar.SDF_BALL])
+def test_five_bar_in_sdf(text: str, tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
+    robot = vc.load(written(tmp_path, "model.sdf", text))
+    assert robot.active == ("o1", "o4")
+    same(numbers(robot, "coupler", [0.5, 0.0, 0.0], ["o1", "o4"]), five_bar_numbers)
+
+
+@pytest.mark.parametrize("text", [five_bar.MJCF, five_bar.MJCF_WELD])
+def test_five_bar_in_mjcf(text: str, tmp_path: Path, five_bar_numbers: dict[str, Any]) -> None:
     pytest.importorskip("mujoco")
-    robot = vc.load(written(tmp_path, "robot.xml", five_bar.MJCF))
+    robot = vc.load(written(tmp_path, "robot.xml", text))
+    assert robot.residuals()[0].gap < 1e-12
     same(numbers(robot, "coupler", [0.5, 0.0, 0.0], ["o1", "o4"]), five_bar_numbers)
