@@ -14,6 +14,7 @@ from vincula.errors import MixedUnitsWarning, RankAmbiguityWarning
 
 if TYPE_CHECKING:
     from vincula.analysis.result import Analysis
+    from vincula.model import LinearModel
 
 
 def print_json(value: Mapping[str, Any]) -> None:
@@ -31,12 +32,12 @@ def said_warnings(analyses: Iterable[Analysis]) -> list[str]:
         kinds = analysis.classified_warnings
         texts += [text for text, kind in kinds if not issubclass(kind, MixedUnitsWarning)]
         if any(issubclass(kind, MixedUnitsWarning) for _, kind in kinds):
-            texts.append(_mixed_units_advice(analysis))
+            texts.append(mixed_units_advice(analysis.model))
     return list(dict.fromkeys(texts))
 
 
-def _mixed_units_advice(analysis: Analysis) -> str:
-    model = analysis.model
+def mixed_units_advice(model: LinearModel) -> str:
+    """What to do about unit weights over metres and radians, at the command line."""
     length = model.length or 1.0
     square = f"{length * length:.3g}"
     twist = ",".join("1" if linear else square for linear in model.twist_linear)
@@ -54,8 +55,10 @@ def tell(texts: Iterable[str]) -> None:
 
 
 @contextmanager
-def warnings_on_stderr(*, quiet: bool = False) -> Iterator[None]:
+def warnings_on_stderr(*, quiet: bool = False) -> Iterator[list[str]]:
     """Warnings as single lines on stderr, each once.
+
+    What is put into the list that it gives is told instead of the library's advice on mixed units.
 
     Args:
         quiet: Leave out doubt and mixed units, which the command tells itself (`said_warnings`).
@@ -66,13 +69,15 @@ def warnings_on_stderr(*, quiet: bool = False) -> Iterator[None]:
         warnings.simplefilter("always", MixedUnitsWarning)
         warnings.simplefilter("ignore", DeprecationWarning)
         warnings.simplefilter("ignore", PendingDeprecationWarning)
+        advice: list[str] = []
         try:
-            yield
+            yield advice
         finally:
             own = (RankAmbiguityWarning, MixedUnitsWarning)
-            texts = [
-                str(warning.message)
-                for warning in caught
-                if not (quiet and issubclass(warning.category, own))
-            ]
+            texts: list[str] = []
+            for warning in caught:
+                if quiet and issubclass(warning.category, own):
+                    continue
+                instead = advice if issubclass(warning.category, MixedUnitsWarning) else []
+                texts += instead or [str(warning.message)]
             tell(dict.fromkeys(texts))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 from vincula.cli.options import close_option, mechanism_options, output_options, together, weights_option
-from vincula.cli.output import print_json, warnings_on_stderr
+from vincula.cli.output import mixed_units_advice, print_json, warnings_on_stderr
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,8 +75,10 @@ def plot_command(
     if "none" in ellipsoids and len(ellipsoids) > 1:
         raise click.UsageError("--ellipsoid none cannot be combined with others")
     kinds = [name.replace("-", " ") for name in ellipsoids if name != "none"] if ellipsoids else None
-    with warnings_on_stderr():
+    with warnings_on_stderr() as advice:
         subject = read_subject(file, **options)
+        if subject.mechanism.reference is not None and kinds != []:
+            advice.append(mixed_units_advice(subject.linearize()))
         figure = _figure(subject, designs, weights, cast("list[Kind] | None", kinds), names, width)
         _save(figure, output)
     if as_json:
