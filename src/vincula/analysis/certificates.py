@@ -16,11 +16,13 @@ from vincula.numerics.surds import NotExactError
 
 
 def certified(model: LinearModel) -> LinearModel:
-    """The model with a certificate for each of its eight ranks.
+    """The model with a certificate for each of its eight ranks, its numbers being what was typed.
 
     Raises:
         MissingExtraError: python-flint is not installed.
     """
+    as_typed = replace(model.uncertainty, digits_length=0.0, digits_angle=0.0)
+    model = replace(model, uncertainty=as_typed)
     found, basis = _certificates(model)
     return replace(model, evidence=replace(model.evidence, certificates=found, basis=basis))
 
@@ -37,6 +39,6 @@ def _certificates(model: LinearModel) -> tuple[dict[str, Certificate], str]:
             str(name): certified_rank(ledger.matrix(name), ledger.decision(name).cutoff)
             for name in MATRIX_NAMES
         }
-        why = f"not exactly known ({reason}): ranks are proved from below only, within all uncertainties"
+        why = f"floating matrices within all their uncertainties, from below only ({reason})"
         return below, why
     return {str(name): certificate for name, certificate in exact.items()}, blocks.basis

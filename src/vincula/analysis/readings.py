@@ -27,7 +27,7 @@ def reading_message(model: LinearModel) -> str | None:
     numbers = _listed(reading.snapped)
     return (
         f"{_differences(typed, reading.summary)} if {numbers}.  To decide: --snap reads the numbers so, "
-        "--exact takes them as typed; or write pi/2 where pi/2 is meant."
+        "--exact takes them as typed; or type all digits of what is meant."
     )
 
 

@@ -60,6 +60,10 @@ def analysis_page(analysis: Analysis, subject: Subject) -> Page:
     _map(page, "Load to motor torques", "torque that balances a unit load", torques)
     page.heading("Rank")
     page.sentence(_rank_line(analysis))
+    if analysis.nearest_singular is not None:
+        from vincula.analysis.readings import nearest_words
+
+        page.sentence(nearest_words(analysis.nearest_singular))
     return page
 
 
@@ -117,7 +121,7 @@ def _counts(page: Page, model: LinearModel) -> None:
     ledger = model.ledger
     page.heading("Mobility and statics")
     readings = {"": ledger.summary}
-    if ledger.status != "certain":
+    if ledger.status in ("doubtful", "assumed"):
         zero, none_zero = ledger.scenarios
         readings = {"taken as": ledger.summary, "if doubtful\nare zero": zero, "if none\nis zero": none_zero}
     values = [reading.as_dict() for reading in readings.values()]
@@ -163,8 +167,11 @@ def _map(page: Page, title: str, note: str, found: LinearMap, *, by_column: bool
 def _rank_line(analysis: Analysis) -> str:
     ledger = analysis.ledger
     residual = f"closure residual {number(analysis.model.uncertainty.residual, 2)} m"
-    if ledger.status != "certain":
+    if ledger.status in ("doubtful", "assumed"):
         return f"{ledger.status}: see the warnings; {residual}"
+    if ledger.status != "certain":
+        proved = "proved" if ledger.status == "exact" else "proved from below"
+        return f"{ledger.status}: ranks {proved} for {analysis.model.evidence.basis}; {residual}"
     full = ledger.decision("all")
     return (
         f"{ledger.status}: the smallest singular value of all constraints that counts is "

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from vincula.cli.doubt_options import doubt_options
 from vincula.cli.exits import DONE, DOUBTFUL
 from vincula.cli.options import (
     active_option,
@@ -22,6 +23,7 @@ from vincula.cli.output import print_json, said_warnings, tell, warnings_on_stde
 
 if TYPE_CHECKING:
     from vincula.analysis.ellipsoid import Convention, Viewpoint
+    from vincula.cli.subject import Subject
 
 
 @click.command(
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     epilog="Example: vincula analyze robot.xml --reference gripper@tip --active j1,j2 --at key:home",
 )
 @together(active_option, mechanism_options, close_option, weights_option, viewpoint_option, convention_option)
-@together(strict_option, output_options)
+@together(doubt_options, strict_option, output_options)
 @click.pass_context
 def analyze_command(
     ctx: click.Context,
@@ -40,6 +42,9 @@ def analyze_command(
     weights: str | None,
     viewpoint: Viewpoint,
     convention: Convention,
+    snap: bool,
+    exact: bool,
+    assume_singular: bool,
     strict: bool,
     as_json: bool,
     **options: Any,
@@ -47,13 +52,25 @@ def analyze_command(
     """Mobility, statics and the five ellipsoids of FILE at one configuration.
 
     FILE is a path or example:NAME. An open loop is refused (exit code 1): nothing is moved unless --close.
+    A doubtful rank is told with what would decide it (exit code 3 with --strict): --exact, --snap or
+    --assume-singular.
     """
     from vincula.analysis.result import analyze
+    from vincula.cli.readings import closed_subject, model_with_readings
     from vincula.cli.subject import read_subject
 
+    def read(snap: bool) -> Subject:
+        return read_subject(file, snap=snap, **options).with_active(active).with_weights(weights)
+
     with warnings_on_stderr(quiet=True):
-        subject = read_subject(file, **options).with_active(active).with_weights(weights)
-        analysis = analyze(subject.linearize(), viewpoint=viewpoint, convention=convention)
+        subject = closed_subject(read, snap=snap)
+        analysis = analyze(
+            model_with_readings(subject, lambda: read(True)),
+            viewpoint=viewpoint,
+            convention=convention,
+            exact=exact,
+            assume_singular=assume_singular,
+        )
         if as_json:
             tell(said_warnings([analysis]))
             print_json(analysis.to_dict())

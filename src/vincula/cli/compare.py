@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from vincula.cli.doubt_options import doubt_options
 from vincula.cli.exits import DONE, DOUBTFUL
 from vincula.cli.options import (
     close_option,
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from vincula.analysis.indices import Part
     from vincula.analysis.ranking import RankedDesign
     from vincula.cli.page import Page
+    from vincula.cli.subject import Subject
 
 CRITERION_NAMES: Final = (
     "kinematic", "active-force", "passive-force", "internal-force", "dual-force",
@@ -63,7 +66,7 @@ CRITERION_NAMES: Final = (
     show_default=True,
     help="Components that an index looks at.",
 )
-@together(close_option, weights_option, strict_option, output_options)
+@together(close_option, weights_option, doubt_options, strict_option, output_options)
 @click.pass_context
 def compare_command(
     ctx: click.Context,
@@ -73,6 +76,9 @@ def compare_command(
     criterion: str,
     on: Part,
     weights: str | None,
+    snap: bool,
+    exact: bool,
+    assume_singular: bool,
     strict: bool,
     as_json: bool,
     **options: Any,
@@ -84,14 +90,21 @@ def compare_command(
     """
     from vincula.analysis.ranking import ranked_designs
     from vincula.analysis.result import analyze
+    from vincula.cli.readings import model_with_readings
     from vincula.cli.subject import read_subject
 
+    def read(design: str, *, snap: bool) -> Subject:
+        return read_subject(file, snap=snap, **options).with_active(design).with_weights(weights)
+
     with warnings_on_stderr(quiet=True):
-        subject = read_subject(file, **options)
-        variants = [subject.with_active(design).with_weights(weights) for design in designs]
-        analyses = [analyze(variant.linearize()) for variant in variants]
+        subject = read_subject(file, snap=snap, **options)
+        analyses = []
+        for design in designs:
+            variant = subject.with_active(design).with_weights(weights)
+            model = model_with_readings(variant, partial(read, design, snap=True))
+            analyses.append(analyze(model, exact=exact, assume_singular=assume_singular))
         ranked = ranked_designs(analyses, criterion, on)
-    tell(said_warnings(analyses))
+    tell([*(f"read as meant: {number}" for number in subject.report.snapped), *said_warnings(analyses)])
     if as_json:
         print_json(_as_dictionary(ranked, criterion, on))
     else:

@@ -6,12 +6,14 @@ from typing import Any
 
 import click
 
+from vincula.cli.doubt_options import snap_option
 from vincula.cli.options import active_option, mechanism_options, output_options, together
 from vincula.cli.output import print_json, warnings_on_stderr
 
 
 @click.command("inspect", short_help="What is in FILE: bodies, joints, loops, motors.")
 @together(active_option, mechanism_options)
+@snap_option
 @click.option("--all", "everything", is_flag=True, help="Every joint and loop, however many there are.")
 @output_options
 def inspect_command(file: str, active: str | None, everything: bool, as_json: bool, **options: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from vincula.arrays import Vector
@@ -11,12 +12,20 @@ if TYPE_CHECKING:
     from vincula.mechanism.closed import ClosedConfiguration
     from vincula.mechanism.mechanism import Mechanism
     from vincula.mechanism.paths import Path
+    from vincula.mechanism.residuals import LoopResidual
     from vincula.mechanism.watching import SingularityKind
     from vincula.spatial.poses import Pose
 
 
 class Closable:
     """Closing, following, assembly modes and change of ground, for `Mechanism`."""
+
+    @cached_property
+    def misdrawn(self) -> tuple[LoopResidual, ...]:
+        """Joints that do not fit between their bodies at home, where those are as they were drawn."""
+        from vincula.mechanism.residuals import misdrawn
+
+        return misdrawn(cast("Mechanism", self))
 
     def close(
         self,

@@ -175,7 +175,7 @@ class _Exact:
 
 def _written(part: Joint | ContactPart) -> Written:
     if part.written is None:
-        raise NotExactError(f"where {part.name!r} is was read from a file that does not say it exactly")
+        raise NotExactError(f"the place of {part.name!r} comes from a file that does not give it exactly")
     return part.written
 
 

@@ -77,7 +77,26 @@ def residuals_of_frames(
         else:
             linear, angular = _contact_gap(mechanism, part, *ends)
         result.append(_measured(part.name, kind, linear, angular, length))
+    if q is mechanism.home or q == mechanism.home:
+        result += mechanism.misdrawn
     return (*result, *_coupling_residuals(mechanism, q, length))
+
+
+def misdrawn(mechanism: Mechanism) -> tuple[LoopResidual, ...]:
+    """Joints of the kinematic tree that do not fit between their bodies as these are drawn.
+
+    A file places every body once, through joints of its own choice; where a loop is open in the file,
+    the gap may be at a joint of our tree, which is never measured at other configurations.
+    """
+    frames = mechanism.frame_table.placed(mechanism.body_poses())
+    found = []
+    for joint, _ in mechanism.tree:
+        at = mechanism.frame_table.of_joint[joint.name]
+        gaps = _joint_gap(mechanism, joint, mechanism.home, frames.pose(at), frames.pose(at + 1))
+        residual = _measured(joint.name, "loop", *gaps, mechanism.length)
+        if residual.gap > CLOSED * mechanism.length:
+            found.append(residual)
+    return tuple(found)
 
 
 def _displaced(mechanism: Mechanism, part: Joint | ContactPart, q: Configuration) -> bool:

@@ -120,7 +120,7 @@ def test_what_is_not_exact_is_not_claimed_to_be() -> None:
         exact_blocks(triangle, triangle.home)
     found = vc.analyze(triangle.linearize(), vc.Weights(), exact=True)
     assert found.ledger.status == "certified_lower"
-    assert "proved from below only" in found.to_dict()["rank"]["basis"]
+    assert "from below only" in found.to_dict()["rank"]["basis"]
     moved = parallelogram("0.5")
     with pytest.raises(NotExactError, match="not where it was drawn"):
         exact_blocks(moved, moved.configuration({"o1": 0.1}))

@@ -41,7 +41,7 @@ def slider_crank(angle: float) -> vc.Mechanism:
     )
 
 
-@pytest.mark.parametrize("angle", [1e-9, 1e-6, 1e-3, 0.03])
+@pytest.mark.parametrize("angle", [1e-6, 1e-3, 0.03])
 def test_change_point(angle: float) -> None:
     mechanism = parallelogram(angle)
     found = nearest_singular(mechanism, mechanism.home, ("all",))
