@@ -125,8 +125,7 @@ class Stepper:
             if self._first:
                 self._first = False
                 here = self._learnt(track, here, there)
-            found = self._met(track, before, here, there)
-            if found is not None:
+            for found in self._met(track, before, here, there):
                 if found.turns or found.kind != "singularity" or not self._is_passed(found):
                     return found.point, found
                 if not self._is_told(found):
@@ -182,20 +181,31 @@ class Stepper:
         track.rank = self.rank
         return here if self._ranks == old else _Here(here.point, here.tangent, self._measures(here.point))
 
-    def _met(self, track: Track, before: _Here | None, here: _Here, there: _Here) -> Found | None:
-        """The first singularity or limit of a step."""
+    def _met(self, track: Track, before: _Here | None, here: _Here, there: _Here) -> list[Found]:
+        """The singularities and limits of a step in their order; those at one point are one."""
         events = [*self._crossings(track, here, there), *self._limits(track, here, there)]
         if not events and before is not None:
             events = self._touches(track, before, here, there)
-        if not events:
-            return None
-        first = min(events, key=lambda event: event.share)
-        same = [e for e in events if e.kind == first.kind and e.share - first.share < TOGETHER]
-        singular = {s.kind: s for event in reversed(same) for s in event.singularities}
-        turns = any(event.turns for event in same)
-        return Found(
-            first.kind, first.point, first.share, tuple(singular.values()), first.column, first.bound, turns
-        )
+        events.sort(key=lambda event: event.share)
+        found = []
+        while events:
+            first = events[0]
+            same = [e for e in events if e.kind == first.kind and e.share - first.share < TOGETHER]
+            events = [e for e in events if e not in same]
+            singular = {s.kind: s for event in reversed(same) for s in event.singularities}
+            turns = any(event.turns for event in same)
+            found.append(
+                Found(
+                    first.kind,
+                    first.point,
+                    first.share,
+                    tuple(singular.values()),
+                    first.column,
+                    first.bound,
+                    turns,
+                )
+            )
+        return found
 
     def _crossings(self, track: Track, here: _Here, there: _Here) -> list[Found]:
         """Watched measures that change sign in the step, or vanish in it or at its end."""
