@@ -133,3 +133,16 @@ def test_pinocchio_puts_the_written_links_where_they_were(name: str, to: str, tm
         placed = data.oMf[model.getFrameId(body.name)]
         assert placed.translation == pytest.approx(body.pose.position, abs=1e-12)
         assert placed.rotation == pytest.approx(body.pose.rotation, abs=1e-12)
+
+
+@pytest.mark.parametrize("model", ["stewart_sdf/model.sdf", "gepetto_cassie_like/robot_nomesh.urdf"])
+def test_from_each_format_to_the_next(model: str, models: Path, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    robot = vc.load(models / model)
+    robot = robot.with_reference(robot.bodies[-1].name)
+    robot = robot.with_configuration(robot.close())
+    now = robot
+    for step, to in enumerate(("mjcf", "urdf-gepetto", "sdf", "urdf-plus", "native", "mjcf", "urdf-plus")):
+        now, _ = read_back(now, tmp_path / f"robot{step}{ROBOTS.get(to, '.yaml')}", to)
+        assert now.active == robot.active
+        same_numbers(robot, now, counts=False)

@@ -59,7 +59,7 @@ class Tree:
         self._efforts = _efforts(model)
         self._pose: dict[str, Pose] = {GROUND: Pose.identity()}
         self._taken = set(names.bodies)
-        self._joint_names = set(names.joints)
+        self._joint_names = {*names.joints, *names.equalities}  # loop joints are called as equalities
         self.bodies: list[Body] = []
         self.joints: list[Joint] = []
         self.mocap: list[str] = []
