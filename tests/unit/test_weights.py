@@ -173,3 +173,17 @@ def test_contact_forces_weigh_contacts_and_member_cuts_only() -> None:
     by_source = Weights(contact_force={source: 3.0}).metric("contact_force", linear).diagonal
     assert by_source is not None
     assert {r.source for r, w in zip(linear.rows, by_source, strict=True) if w == 3.0} == {source}
+
+
+def test_a_matrix_of_condition_1e16_is_graded_or_semidefinite_and_never_inverted() -> None:
+    """Graded by units it keeps its full rank; two components that weigh as one are found to be one."""
+    from vincula.weights import metric_of
+
+    names = [("vx",), ("vy",), ("wz",)]
+    graded = metric_of([[1.0, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 1e-16]], "twist", names)
+    assert graded.definite
+    np.testing.assert_allclose(graded.factor @ graded.inverse, np.eye(3), atol=1e-14)
+    same = 1.0 - 3e-16
+    alike = metric_of([[1.0, same, 0.0], [same, 1.0, 0.0], [0.0, 0.0, 1.0]], "twist", names)
+    assert alike.factor.shape == (2, 3)
+    np.testing.assert_allclose(np.abs(alike.factor @ [1.0, -1.0, 0.0]).max(), 0.0, atol=1e-15)

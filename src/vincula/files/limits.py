@@ -1,8 +1,9 @@
 """How much a file may hold.
 
 The limits keep hostile files from costing time or memory: bytes are counted before reading, nodes,
-depth and aliases while parsing, seconds on the way.  Memory needs no meter of its own: a few hundred
-bytes a node times the node limit stays far below 512 MiB.
+depth and aliases while parsing, seconds on the way.  Memory of our own readers needs no meter: a few
+hundred bytes a node times the node limit stays far below 512 MiB.  MuJoCo's parser, which knows no
+limits, is held to 512 MiB and to the same seconds in a process of its own (see `mjcf_child`).
 """
 
 from __future__ import annotations
