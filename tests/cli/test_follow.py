@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 from pathlib import Path
 
 import pytest
@@ -57,7 +58,18 @@ def test_a_path_from_a_file_and_a_table_of_it(run, run_json, tmp_path: Path) -> 
     with table.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [float(row["o1"]) for row in rows] == [0.0, -0.1, -0.2]
-    assert list(rows[0]) == ["parameter", "o1", "o2", "o3", "o4", "o5", "residual", "margin"]
+    assert list(rows[0]) == [
+        "parameter",
+        "o1",
+        "o2",
+        "o3",
+        "o4",
+        "o5",
+        "residual",
+        "margin",
+        "efficiency1",
+        "efficiency2",
+    ]
     assert all(float(row["residual"]) < 1e-12 for row in rows)
     found = run_json("follow", FIVE_BAR, "--path", str(values))
     assert float(rows[2]["o3"]) == found["points"][2]["configuration"]["o3"]
@@ -116,3 +128,17 @@ def test_bad_tables(run, tmp_path: Path) -> None:
     ):
         table.write_text(text)
         assert message in run("follow", FIVE_BAR, "--path", str(table), code=2).stderr
+
+
+def test_efficiencies_keep_their_place_along_the_path(run_json, tmp_path: Path) -> None:
+    file = tmp_path / "path.csv"
+    words = ("follow", "example:five-bar", "--to", "o1=-0.4,o5=0.3", "--steps", "60", "--csv", str(file))
+    found = [point["efficiencies"] for point in run_json(*words)["points"]]
+    # At home they are those of the analysis, and along the path nothing jumps.
+    assert found[0] == pytest.approx([9.7365, 0.5135], abs=5e-4)
+    for before, after in itertools.pairwise(found):
+        for one, other in zip(before, after, strict=True):
+            assert abs(other - one) < 0.25 * abs(one)
+    header, first = file.read_text().splitlines()[:2]
+    assert header.endswith("margin,efficiency1,efficiency2")
+    assert [float(x) for x in first.split(",")[-2:]] == pytest.approx(found[0])

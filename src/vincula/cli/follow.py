@@ -133,16 +133,19 @@ def _waypoints(
 def _write_table(subject: Subject, path: Path, file: str) -> None:
     """Joint values in the units of the file, a row a configuration."""
     from vincula.cli.close_page import configuration_of
+    from vincula.cli.follow_efficiencies import efficiencies_along
 
+    efficiencies = efficiencies_along(subject, path)
     try:
         with FilePath(file).open("w", newline="", encoding="utf-8") as stream:
             writer = csv.writer(stream)
             for k, point in enumerate(path.points):
                 values = configuration_of(subject, point.configuration)
                 if k == 0:
-                    writer.writerow(["parameter", *_columns(values), "residual", "margin"])
+                    own = [f"efficiency{i}" for i in range(1, len(efficiencies[0]) + 1)]
+                    writer.writerow(["parameter", *_columns(values), "residual", "margin", *own])
                 numbers = [x for v in values.values() for x in (v if isinstance(v, list) else [v])]
-                writer.writerow([point.parameter, *numbers, point.residual, point.margin])
+                writer.writerow([point.parameter, *numbers, point.residual, point.margin, *efficiencies[k]])
     except OSError as error:
         raise FileError(f"{file}: the table cannot be written ({error.strerror})") from error
 

@@ -23,6 +23,8 @@ ROWS: Final = 12
 
 def path_facts(subject: Subject, path: Path) -> dict[str, Any]:
     """The JSON object: metres and radians, but for configurations, which are in the units of the file."""
+    from vincula.cli.follow_efficiencies import efficiencies_along
+
     units = subject.report.units
     return {
         "schema": "vincula/path/1",
@@ -41,8 +43,9 @@ def path_facts(subject: Subject, path: Path) -> dict[str, Any]:
                 "configuration": configuration_of(subject, point.configuration),
                 "residual": point.residual,
                 "margin": _finite(point.margin),
+                "efficiencies": found,
             }
-            for point in path.points
+            for point, found in zip(path.points, efficiencies_along(subject, path), strict=True)
         ],
         "frames": [
             {name: {"position": at, "rotation": turn} for name, (at, turn) in frame.items()}
