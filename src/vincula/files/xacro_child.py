@@ -79,8 +79,8 @@ def main() -> None:
     import xml.dom.expatbuilder  # all imports now: later they are forbidden
     import xml.dom.minidom
 
-    xacro = importlib.import_module("xacro")
-    substitutions = importlib.import_module("xacro.substitution_args")
+    xacro: Any = importlib.import_module("xacro")
+    substitutions: Any = importlib.import_module("xacro.substitution_args")
     importlib.import_module("yaml")
 
     _limit(job)
