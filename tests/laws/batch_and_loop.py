@@ -33,7 +33,7 @@ class Comparison:
         status: Configurations with another status.
         integers: Configurations with another count or class.
         values: Efficiencies that differ by more than they may.
-        largest: Largest relative difference of a kinematic efficiency among those known to 1e-10.
+        largest: Largest relative difference of a kinematic efficiency among those known to 1e-7.
         turned: Largest difference of a direction that is well determined.
         special: Configurations that are doubtful or differ in their counts from the most.
         notes: Examples of differences.
@@ -97,7 +97,7 @@ def _compare_values(found: Comparison, kind: str, fast: vc.Evaluation, slow: vc.
             f"lane {lane}: {kind} {entry} is {one[lane, entry]:.17g}, one by one {two[lane, entry]:.17g}, "
             f"allowed {allowed[lane, 0]:.1e}"
         )
-    sure = (doubt < WELL)[:, None] & finite
+    sure = (doubt < 1e3 * WELL)[:, None] & finite
     if kind == "kinematic" and sure.any():
         found.largest = max(found.largest, float(relative[sure].max()))
 

@@ -45,6 +45,19 @@ class Batch:
         """Number of configurations."""
         return int(np.prod(self.shape, dtype=np.int64))
 
+    def one(self, lane: int) -> Batch:
+        """The batch of one lane alone."""
+        part = slice(lane, lane + 1)
+        return Batch(
+            shape=(),
+            given=self.given,
+            values=None if self.values is None else self.values[part],
+            starts=None if self.starts is None else self.starts[part],
+            first=self.first,
+            stretch=1,
+            parameters={name: values[part] for name, values in self.parameters.items()},
+        )
+
     def parameters_at(self, lane: int) -> dict[str, float]:
         """Parameter values of one lane."""
         return {name: float(values[lane]) for name, values in self.parameters.items()}

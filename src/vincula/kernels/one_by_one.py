@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Final
 
 from vincula.kernels.closing import Chain
@@ -17,10 +17,15 @@ MOST_REASONS: Final = 10_000
 
 
 class Reasons:
-    """Why lanes are not ok, in words; the first `MOST_REASONS` of them."""
+    """Why lanes are not ok, in words: the first `MOST_REASONS` of them, or found out when asked for.
 
-    def __init__(self) -> None:
+    Args:
+        explain: Finds out the reason of a lane, where it does not depend on other lanes.
+    """
+
+    def __init__(self, explain: Callable[[int], str] | None = None) -> None:
         self._found: dict[int, str] = {}
+        self._explain = explain
 
     def add(self, lane: int, outcome: Outcome) -> None:
         """Keep the reason of a lane."""
@@ -29,9 +34,24 @@ class Reasons:
 
     def __call__(self, lane: int) -> str:
         """The reason of a lane that is not ok."""
-        return self._found.get(
-            lane, f"only the first {MOST_REASONS} reasons of a batch are kept: evaluate this one alone"
-        )
+        if lane in self._found:
+            return self._found[lane]
+        if self._explain is not None:
+            return self._explain(lane)
+        return f"only the first {MOST_REASONS} reasons of a batch are kept: evaluate this one alone"
+
+
+def reasons_for(variants: Variants, plan: Plan, batch: Batch) -> Reasons:
+    """Reasons of a batch; those of whole configurations can be found out later."""
+    if batch.given != "configuration":
+        return Reasons()
+
+    def explain(lane: int) -> str:
+        one = batch.one(lane)
+        scratch = {quantity.name: quantity.empty(1) for quantity in plan.quantities}
+        return _one(variants, plan, one, scratch, None, 0).reason
+
+    return Reasons(explain)
 
 
 def evaluate_one_by_one(

@@ -106,6 +106,16 @@ _VALUE_NAMES: Final[dict[tuple[str, int], tuple[str, ...]]] = {
 }
 
 
+def quaternion_places(mechanism: Mechanism) -> tuple[int, ...]:
+    """Where in one configuration quaternions begin."""
+    places, start = [], 0
+    for values in mechanism.home.values():
+        if len(values) in (4, 7):
+            places.append(start + len(values) - 4)
+        start += len(values)
+    return tuple(places)
+
+
 def pose_components(mechanism: Mechanism) -> tuple[str, ...]:
     """Names of the numbers of a pose of the reference member, in order [m, rad]."""
     return (

@@ -1,0 +1,36 @@
+"""Where the reference member is: its frame in ground axes, in lanes."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numba
+
+from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.entries import fingerprint
+from vincula.kernels.lanes.frames import place_all
+from vincula.kernels.lanes.jit import Code, Slots
+from vincula.kernels.lanes.results import write
+from vincula.kernels.lanes.vector import zero_of
+from vincula.kernels.lanes.workspace import aligned, enter
+
+_OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
+
+
+@lru_cache(maxsize=4)
+def pose_entry(width: int) -> Any:
+    """Frames: (values, code, constants, base, out), out N x 12: rotation by rows, origin in lengths L."""
+    zero, stamp = zero_of(width), fingerprint()
+
+    @numba.njit(**_OPTIONS)
+    def run(values: Slots, code: Code, constants: Slots, base: int, out: Slots) -> str:
+        z = zero()
+        w = aligned(base + code[t.SLOTS], width)
+        for block in range((values.shape[0] + width - 1) // width):
+            enter(w, code, constants, base, values, block, width, z)
+            place_all(w, code, constants, base, z)
+            write(w, base + code[t.REFERENCE], 12, out, block * width, width)
+        return stamp
+
+    return run
