@@ -1,7 +1,8 @@
 """What the README and the pages show runs, block after block, as a reader would type it.
 
 A block that needs something the checkout does not hold (a user's own file) opens with
-```python no-run.  An ```output block is what the blocks before it print.
+```python no-run.  An ```output block is what the blocks before it print.  A file that the page shows,
+```xml file or ```yaml file with its name in a comment on the first line, is there for both.
 """
 
 from __future__ import annotations
@@ -30,6 +31,15 @@ def blocks(page: Path, language: str) -> list[tuple[int, str]]:
     ]
 
 
+def write_files(page: Path, folder: Path) -> None:
+    """The files that a page shows, under the names in their first lines."""
+    for language in ("xml", "yaml"):
+        for found in BLOCK.finditer(page.read_text(encoding="utf-8")):
+            if found["info"].split() == [language, "file"]:
+                name = found["code"].split("\n", 1)[0].strip("<!-># ")
+                (folder / name).write_text(found["code"], encoding="utf-8")
+
+
 def name_of(page: Path) -> str:
     """Path of a page below the checkout, for test names."""
     return page.relative_to(ROOT).as_posix()
@@ -40,6 +50,7 @@ def test_python_blocks_run(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    write_files(page, tmp_path)
     names: dict[str, object] = {"__name__": "page"}
     for line, code in blocks(page, "python"):
         exec(compile("\n" * (line - 1) + code, str(page), "exec"), names)
@@ -64,6 +75,7 @@ def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(os.environ, "COLUMNS", "120")
+    write_files(page, tmp_path)
     for command in commands:
         result = CliRunner().invoke(cli, shlex.split(command, comments=True)[1:], catch_exceptions=False)
         assert result.exit_code == 0, f"{command}\n{result.output}"
