@@ -167,3 +167,9 @@ def leg(tmp_path: Path) -> str:
         encoding="utf-8",
     )
     return str(file)
+
+
+def test_a_side_file_given_alone_is_recognised(run, tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text("closed_loop: [[a, b]]\ntype: [3d]\nname_mot: [m]\n", encoding="utf-8")
+    assert "name the URDF file beside it" in run("inspect", str(file), code=2).stderr

@@ -107,9 +107,11 @@ def _refuse_other_files(document: Document) -> None:
     near = [key for key in document.root.entries if key.lower().startswith("vin")] if isinstance(
         document.root, Table) else []  # fmt: skip
     what = f" (got {shown(near[0])})" if near else ""
+    beside = isinstance(document.root, Table) and {"closed_loop", "name_mot"} & set(document.root.entries)
+    hint = "; it looks like a Gepetto side file: name the URDF file beside it" if beside else ""
     raise FileError(
         f"{document.place([]).text()}: expected the key `vincula: 1`{what}: "
-        "the file is no vincula native file, version 1"
+        f"the file is no vincula native file, version 1{hint}"
     )
 
 
