@@ -12,7 +12,7 @@ from vincula.kernels.lanes.entries import fingerprint
 from vincula.kernels.lanes.frames import place_all
 from vincula.kernels.lanes.jit import Code, Slots
 from vincula.kernels.lanes.results import write
-from vincula.kernels.lanes.vector import zero_of
+from vincula.kernels.lanes.vector import zeros
 from vincula.kernels.lanes.workspace import aligned, enter
 
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
@@ -21,11 +21,11 @@ _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
 @lru_cache(maxsize=4)
 def pose_entry(width: int) -> Any:
     """Frames: (values, code, constants, base, out), out N x 12: rotation by rows, origin in lengths L."""
-    zero, stamp = zero_of(width), fingerprint()
+    stamp = fingerprint()
 
     @numba.njit(**_OPTIONS)
     def run(values: Slots, code: Code, constants: Slots, base: int, out: Slots) -> str:
-        z = zero()
+        z = zeros(width)
         w = aligned(base + code[t.SLOTS], width)
         for block in range((values.shape[0] + width - 1) // width):
             enter(w, code, constants, base, values, block, width, z)

@@ -56,8 +56,21 @@ def _all(width: int, value: float) -> Any:
     return ir.Constant(_llvm(width), [value] * width)
 
 
+@intrinsic(prefer_literal=True)
+def zeros(context: Any, width: Any) -> Any:
+    """Zero in as many lanes as a constant says; everything takes its width from it.
+
+    The width is a plain number, because kernels are found again on disk by what they close over: an
+    object made for a width would be another one in every process.
+    """
+    if not isinstance(width, types.IntegerLiteral):
+        return None
+    lanes = width.literal_value
+    return Vec(lanes)(width), lambda c, b, s, a: _all(lanes, 0.0)
+
+
 def zero_of(width: int) -> Any:
-    """A function of kernels that gives zero in `width` lanes; everything takes its width from it."""
+    """A function of kernels that gives zero in `width` lanes; not for kernels that are kept on disk."""
 
     @intrinsic
     def zero(context: Any) -> Any:
