@@ -94,6 +94,17 @@ def test_one_lane_has_the_bits_of_many(rng: np.random.Generator) -> None:
         np.testing.assert_array_equal(program.matrices(row[None])[0], found)
 
 
+def test_large_angles_lose_nothing(rng: np.random.Generator) -> None:
+    """Sine and cosine of many turns are those of the number given."""
+    mechanism = example("serial-2r")
+    program = LaneProgram.prepare(mechanism)
+    values = rng.uniform(-1, 1, (400, 2)) * 10.0 ** rng.uniform(-9, 8.9, (400, 1))
+    values[:, 1] = 0.0
+    found = program.matrices(values)
+    expected = np.array([ordinary(mechanism, row) for row in values])
+    np.testing.assert_allclose(found, expected, rtol=0, atol=5e-16 * np.abs(expected).max())
+
+
 def test_angles_beyond_reason_are_not_a_number() -> None:
     mechanism = example("serial-2r")
     program = LaneProgram.prepare(mechanism)

@@ -42,7 +42,7 @@ def certify_twists(w: Slots, code: Code, base: int, z: Lane) -> None:
     for limb in range(code[t.LIMBS]):
         entry = code[t.LIMB] + t.LIMB_ENTRY * limb
         inverse = _free_motors(w, code, base, entry, stack + row, m, z)
-        worst = larger(inverse, worst)
+        worst = larger(worst, inverse)
         row += code[entry + 1] - code[entry + 4]
     store(w, notes + t.DRIVEN_INVERSE, worst)
     _triangle(w, code, base, stack, m, d, code[t.REST_ORDER], code[t.REST_RANK], t.REST_INVERSE, z)
@@ -76,7 +76,7 @@ def _triangle(
     trail = z
     for j in range(rank, columns):
         trail = trail + square_below(w, matrix + code[order + j] * m, rank, m, z)
-    store(w, notes + t.TRAIL, larger(trail, load(w, notes + t.TRAIL, z)))
+    store(w, notes + t.TRAIL, larger(load(w, notes + t.TRAIL, z), trail))
 
 
 @kernel
@@ -94,7 +94,7 @@ def _free_motors(w: Slots, code: Code, base: int, entry: int, stack: int, stride
     for j in range(rank, motors):
         trail = trail + square_below(w, matrix + code[order + j] * m, rank, m, z)
     notes = base + code[t.NOTES]
-    store(w, notes + t.TRAIL, larger(trail, load(w, notes + t.TRAIL, z)))
+    store(w, notes + t.TRAIL, larger(load(w, notes + t.TRAIL, z), trail))
     for i in range(d):
         for r in range(rank, m):
             store(w, stack + i * stride + r - rank, load(w, matrix + (motors + i) * m + r, z))
@@ -119,18 +119,27 @@ def certain_ranks(w: Slots, code: Code, constants: Slots, base: int, z: Lane) ->
     driven = _joined(passive, load(w, notes + t.DRIVEN_INVERSE, z), norm, z)
     locked = _joined(passive, load(w, notes + t.OBJECT_INVERSE, z), norm, z)
     whole = _joined(driven, load(w, notes + t.REST_INVERSE, z), norm, z)
-    rho = _rho(w, code, constants, base, z)
     together = passive + driven + locked + whole
     # What is infinite or not a number must not be lost in a comparison.
     worst = larger(larger(passive, driven), larger(locked, whole)) + (together - together)
-    size = sqrt(norm)
-    doubt = uncertainty(w, code, constants, worst, size, rho, z)
-    good = less(splat(ASKED, z) * doubt * sqrt(worst), splat(1.0, z))
-    zero = constant(constants, w, code[t.DOUBT] + 1, z) * size
-    good = both(good, less(load(w, notes + t.TRAIL, z), zero * zero))
+    good = is_certain(w, code, constants, base, worst, load(w, notes + t.TRAIL, z), z)
+    rho, size = _rho(w, code, constants, base, z), sqrt(norm)
     of_whole = uncertainty(w, code, constants, whole, size, rho, z)
     store(w, notes + t.LIMB_INVERSE, of_whole * sqrt(whole))
     return select(good, splat(1.0, z), z)
+
+
+@kernel
+def is_certain(
+    w: Slots, code: Code, constants: Slots, base: int, inverse: Lane, trail: Lane, z: Lane
+) -> Lane:
+    """Whether a rank is certain: squared norms of an inverse, and of what should be zero."""
+    rho = _rho(w, code, constants, base, z)
+    size = sqrt(load(w, base + code[t.NOTES] + t.NORM, z))
+    doubt = uncertainty(w, code, constants, inverse, size, rho, z)
+    good = less(splat(ASKED, z) * doubt * sqrt(inverse), splat(1.0, z))
+    zero = constant(constants, w, code[t.DOUBT] + 1, z) * size
+    return both(good, less(trail, zero * zero))
 
 
 @kernel

@@ -25,6 +25,12 @@ def dense_matrix(
     """
     place_all(w, code, constants, base, z)
     slopes(w, code, constants, base, z)
+    dense_rows(w, code, constants, base, columns, target, z)
+
+
+@kernel
+def dense_rows(w: Slots, code: Code, constants: Slots, base: int, columns: int, target: int, z: Lane) -> None:
+    """The same where frames and slopes are known."""
     m, n = code[t.ROWS], code[t.COLUMNS]
     for block in range(code[t.BLOCKS]):
         first = code[code[t.BLOCK] + t.BLOCK_ENTRY * block]

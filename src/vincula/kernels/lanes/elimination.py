@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.chains import keep_inverse, note_chains
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
 from vincula.kernels.lanes.reflections import inverse_square, left_null, square_below, triangularise
 from vincula.kernels.lanes.rows import joint_entries, member_entries
@@ -28,6 +29,7 @@ def eliminate(w: Slots, code: Code, constants: Slots, base: int, z: Lane) -> Non
         entry = code[t.FRONT] + t.FRONT_ENTRY * front
         _gather(w, code, constants, base, entry, z)
         _hand_on(w, code, base, entry, z)
+    note_chains(w, code, base, z)
 
 
 @kernel
@@ -80,8 +82,11 @@ def _hand_on(w: Slots, code: Code, base: int, entry: int, z: Lane) -> None:
     by_left = code[entry + 5] == t.BY_LEFT
     reach = rank if by_left else pivots + behind
     triangularise(w, matrix, m, code, order, steps, reach, factors, z)
-    square = inverse_square(w, matrix, m, code, order, rank, factors, vector, z)
-    store(w, notes + t.PASSIVE_INVERSE, larger(square, load(w, notes + t.PASSIVE_INVERSE, z)))
+    if code[entry + 16] >= 0:
+        keep_inverse(w, code, base, entry, z)
+    else:
+        square = inverse_square(w, matrix, m, code, order, rank, factors, vector, z)
+        store(w, notes + t.PASSIVE_INVERSE, larger(load(w, notes + t.PASSIVE_INVERSE, z), square))
     if by_left:
         _by_left(w, code, entry, matrix, factors, vector, notes, out, z)
     else:
@@ -104,7 +109,7 @@ def _by_left(
             trail = fma(x, x, trail)
         for j in range(behind):
             store(w, out + r * behind + j, _product(w, vector, matrix + (pivots + j) * m, m, z))
-    store(w, notes + t.TRAIL, larger(trail, load(w, notes + t.TRAIL, z)))
+    store(w, notes + t.TRAIL, larger(load(w, notes + t.TRAIL, z), trail))
 
 
 @kernel
@@ -142,4 +147,4 @@ def _by_reflection(
             trail = trail + square_below(w, place, rank + handed, m, z)
             for r in range(handed):
                 store(w, out + r * behind + column - pivots, load(w, place + rank + r, z))
-    store(w, notes + t.TRAIL, larger(trail, load(w, notes + t.TRAIL, z)))
+    store(w, notes + t.TRAIL, larger(load(w, notes + t.TRAIL, z), trail))

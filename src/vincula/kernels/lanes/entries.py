@@ -23,26 +23,35 @@ from vincula.kernels.lanes.elimination import eliminate
 from vincula.kernels.lanes.frames import place_all
 from vincula.kernels.lanes.gaps import note_gaps
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
+from vincula.kernels.lanes.ranks import certain_counts
 from vincula.kernels.lanes.relation import relate
 from vincula.kernels.lanes.results import finish, write
 from vincula.kernels.lanes.rows import slopes
-from vincula.kernels.lanes.vector import zero_of
+from vincula.kernels.lanes.vector import zeros
 from vincula.kernels.lanes.workspace import aligned, enter
 
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
+SPECTRA = (
+    "angles certificates chains dense elimination entries frames gaps jit ranks reflections relation results "
+    "rows tables trigonometry vector workspace"
+)
+"""Sources that the entries of this file are made of."""
+
+
 @lru_cache(maxsize=4)
-def fingerprint(without: str = "?") -> str:
+def fingerprint(sources: str = "") -> str:
     """A digest of kernel sources and of the compiler's version.
 
     Args:
-        without: Sources whose names begin like this are left out.
+        sources: Names of the files, separated by spaces; all of this folder by default.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        if not path.name.startswith(without):
-            digest.update(path.read_bytes())
+    folder = Path(__file__).parent
+    names = [f"{name}.py" for name in sources.split()] or sorted(path.name for path in folder.glob("*.py"))
+    for name in names:
+        digest.update((folder / name).read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -57,13 +66,13 @@ def lanes_of_this_machine() -> int:
 @lru_cache(maxsize=4)
 def dense_entry(width: int) -> Any:
     """Whole matrices: (values, code, constants, base, columns, slots, out), out N x m x (n + d)."""
-    zero, stamp = zero_of(width), fingerprint("closing")
+    stamp = fingerprint(SPECTRA)
 
     @numba.njit(**_OPTIONS)
     def run(
         values: Slots, code: Code, constants: Slots, base: int, columns: int, slots: int, out: Any
     ) -> str:
-        z = zero()
+        z = zeros(width)
         w = aligned(slots, width)
         m, n = code[t.ROWS], code[t.COLUMNS] + code[t.TWIST]
         target = base + code[t.SLOTS]
@@ -88,6 +97,8 @@ def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, z: Lan
     note_gaps(w, code, constants, base, z)
     certify_twists(w, code, base, z)
     certain = certain_ranks(w, code, constants, base, z)
+    if want & 8:
+        certain = certain * certain_counts(w, code, constants, base, z)
     relate(w, code, constants, base, z)
     settled = rotate_all(w, code, base, z)
     size = code[t.MOTORS] + code[t.TWIST]
@@ -98,14 +109,14 @@ def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, z: Lan
 @lru_cache(maxsize=4)
 def spectra_entry(width: int) -> Any:
     """Spectra: (values, code, constants, base, want, first, last, out) for blocks first ... last - 1."""
-    zero, stamp = zero_of(width), fingerprint("closing")
+    stamp = fingerprint(SPECTRA)
 
     @numba.njit(**_OPTIONS)
     def run(
         values: Slots, code: Code, constants: Slots, base: int, want: int, first: int, last: int, out: Slots
     ) -> str:
-        z = zero()
-        w = aligned(base + code[t.TOTAL], width)
+        z = zeros(width)
+        w = aligned(base + (code[t.TOTAL_WITH_COUNTS] if want & 8 else code[t.TOTAL]), width)
         for block in range(first, last):
             enter(w, code, constants, base, values, block, width, z)
             spectra(w, code, constants, base, want, z)

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vincula.arrays import Matrix
 from vincula.kernels.lanes import tables as t
-from vincula.kernels.lanes.elimination_plan import Eliminator, Front, Samples
+from vincula.kernels.lanes.elimination_plan import Eliminator, Front, Samples, ordered
 from vincula.kernels.lanes.flatten import Flat, Unsupported
 from vincula.kernels.lanes.relation_plan import LimbPlan, RelationPlan, plan_relation
 from vincula.kernels.lanes.structure import Structure
 from vincula.mechanism.layout import Layout
-from vincula.numerics.counts import SummaryCounts
+from vincula.numerics.counts import SummaryCounts, TwelveCounts
+from vincula.numerics.ledger import MatrixName, RankLedger
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,30 +25,28 @@ class Plan:
     Attributes:
         code: `Flat.code` with the plan behind it.
         counts: The summary counts that certain lanes have.
-        finite: Number of finite efficiencies.
+        twelve: The twelve counts that lanes have which are certain of these; None if no sample is.
     """
 
     code: NDArray[np.int64]
     counts: SummaryCounts
-    finite: int
+    twelve: TwelveCounts | None
 
 
-def make_plan(
-    flat: Flat, layout: Layout, matrices: Sequence[Matrix], counts: SummaryCounts, constants: dict[str, int]
-) -> Plan:
+def make_plan(flat: Flat, layout: Layout, ledgers: Sequence[RankLedger], constants: dict[str, int]) -> Plan:
     """The plan of a mechanism whose matrices are known at samples.
 
     Args:
         flat: Its flat arrays.
         layout: Its layout.
-        matrices: [J_a J_p -G^T] at samples of equal, certain ranks.
-        counts: The summary counts there.
+        ledgers: Ledgers of samples of equal, certain ranks.
         constants: Where the constants of metrics (`metric`) and doubts (`doubt`) begin.
 
     Raises:
         Unsupported: The ranks found limb by limb are not those of the whole.
     """
-    structure, samples = Structure.of(layout), Samples.of(matrices)
+    counts = ledgers[0].summary
+    structure, samples = Structure.of(layout), Samples.of([one.matrix("all") for one in ledgers])
     eliminator = Eliminator(structure, samples)
     reduced = [eliminator.limb(k) for k in range(len(structure.limbs))]
     motors = [[c for c in columns if c < structure.motors] for _, columns in structure.limbs]
@@ -59,7 +57,9 @@ def make_plan(
     writer.fronts(eliminator.fronts)
     writer.limbs(eliminator.fronts, relation)
     writer.header(relation, counts, constants)
-    return Plan(np.array(writer.code, dtype=np.int64), counts, counts.coordinated)
+    certain = [one for one in ledgers if one.counts and one.status == "certain"]
+    writer.ranks(certain)
+    return Plan(np.array(writer.code, dtype=np.int64), counts, certain[0].counts if certain else None)
 
 
 def _refuse_other_ranks(
@@ -104,17 +104,20 @@ class _Writer:
     def fronts(self, fronts: list[Front]) -> None:
         """Entries of all fronts."""
         entries: list[int] = []
+        chained = _chained(fronts)
         for k, front in enumerate(fronts):
             others = len(front.columns) - front.pivots
             width = others + (self.twist if front.member else 0)
             self.place[k] = self.slot(front.handed * width)
             self._room(front.rows, front.pivots + width)
+            mode = t.BY_LEFT if front.left and k not in chained else t.BY_REFLECTION
             entries += [
                 front.rows, front.pivots, front.rank, others, front.handed,
-                t.BY_LEFT if front.left else t.BY_REFLECTION, int(front.member), self.place[k],
+                mode, int(front.member), self.place[k],
                 self.listed(front.blocks), len(front.blocks), self.listed(front.columns),
-                self.listed([n for child in front.children for n in self._child(fronts, child, front)]),
+                self.listed([n for c in front.children for n in self._child(fronts, c, front)]),
                 len(front.children), self.listed(front.order), front.reflections, front.limb,
+                *(self._chain(fronts, k) if k in chained else (-1, 0, 0, -1)),
             ]  # fmt: skip
         self.code[t.FRONTS], self.code[t.FRONT] = len(fronts), self.listed(entries)
 
@@ -132,6 +135,18 @@ class _Writer:
         if parent.member:
             columns += [len(others) + k if front.member else -1 for k in range(self.twist)]
         return [self.place[child], front.handed, width, *columns]
+
+    def _chain(self, fronts: list[Front], index: int) -> list[int]:
+        """Slot of inverses, passive columns among the others, and the front that takes what is handed on."""
+        front, motors = fronts[index], self.structure.motors
+        after = [k for k, other in enumerate(fronts) if index in other.children]
+        rest = [c for c in front.columns[front.pivots :] if c >= motors]
+        size = front.rank + len(rest)
+        place = self.slot(front.rank * size + size * size)
+        numbers: list[int] = []
+        for column in rest:
+            numbers += [front.columns.index(column), _index_in(fronts[after[0]], column, motors)]
+        return [place, len(rest), self.listed(numbers), after[0] if after else -1]
 
     def limbs(self, fronts: list[Front], relation: RelationPlan) -> None:
         """Entries of all limbs, in the order in which they enter the relation."""
@@ -166,7 +181,7 @@ class _Writer:
             t.MOTIONS: relation.freedom * (code[t.MOTORS] + d),
             t.SQUARES: 2 * relation.freedom,
             t.NOTES: t.NOTE_COUNT,
-            t.OUTPUT: output_size(counts.coordinated, code[t.MOTORS], d, 3),
+            t.OUTPUT: output_size(counts, code[t.MOTORS], d, 7),
         }
         for entry, count in sizes.items():
             code[entry] = self.slot(count)
@@ -178,8 +193,48 @@ class _Writer:
         code[t.REST_ORDER] = self.listed(relation.rest_order)
         code[t.TOTAL] = self.slots
 
+    def ranks(self, ledgers: Sequence[RankLedger]) -> None:
+        """The four matrices beyond the summary: shapes, ranks, orders."""
+        code, d = self.code, self.twist
+        m, n, n_a = code[t.ROWS], code[t.COLUMNS], code[t.MOTORS]
+        member, motors = list(range(n, n + d)), list(range(n_a))
+        code[t.EVERY_COLUMN] = self.listed(range(n))
+        names: dict[MatrixName, tuple[int, list[int]]] = {
+            "active": (m, motors), "member": (m, member), "active+member": (m, motors + member),
+            "triple": (2 * m, list(range(n + d))),
+        }  # fmt: skip
+        entries: list[int] = []
+        for name, (rows, columns) in names.items():
+            of_samples = [one.matrix(name) for one in ledgers]
+            rank, order = ordered(of_samples, [one.scale for one in ledgers]) if ledgers else (0, [])
+            entry = [rows, rank, len(columns), self.listed(order), *columns]
+            entries += entry + [0] * (4 + n + d - len(entry))
+        code[t.RANKS], code[t.RANK_SPACE] = self.listed(entries), 4 + n + d
+        code[t.WHOLE] = self.slot(3 * m * (n + d))
+        code[t.WHOLE_FACTORS] = self.slot(4 * max(2 * m, n + d) + 1)
+        code[t.TOTAL_WITH_COUNTS] = self.slots
 
-def output_size(finite: int, motors: int, twist: int, want: int) -> int:
+
+def _chained(fronts: list[Front]) -> set[int]:
+    """Fronts of limbs in which more than one front eliminates something."""
+    count: dict[int, int] = {}
+    for front in fronts:
+        count[front.limb] = count.get(front.limb, 0) + (front.pivots > 0)
+    return {k for k, front in enumerate(fronts) if count[front.limb] > 1}
+
+
+def _index_in(front: Front, column: int, motors: int) -> int:
+    """Index of a passive column among the independent pivots and passive others of a front; -1: dropped."""
+    position = front.columns.index(column)
+    if position >= front.pivots:
+        return front.rank + [c for c in front.columns[front.pivots :] if c >= motors].index(column)
+    kept = front.order[: front.rank]
+    return kept.index(position) if position in kept else -1
+
+
+def output_size(counts: SummaryCounts, motors: int, twist: int, want: int) -> int:
     """Number of results of one configuration: see `results.finish`."""
-    directions = (want & 1) + (want >> 1)
-    return 3 + 2 * finite + directions * finite * (motors + twist)
+    finite = counts.coordinated
+    directions = (want & 1) + (want >> 1 & 1)
+    size = 3 + 2 * finite + directions * finite * (motors + twist)
+    return size + (counts.indeterminacy * twist + counts.redundancy * motors if want & 4 else 0)

@@ -27,7 +27,7 @@ from vincula.kernels.lanes.flatten import Flat, Unsupported, flatten
 from vincula.kernels.lanes.metrics import doubt_constants, metric_constants
 from vincula.kernels.lanes.plan import Plan, make_plan, output_size
 from vincula.model import LinearModel
-from vincula.numerics.counts import SummaryCounts
+from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.weights import Weights
 
 if TYPE_CHECKING:
@@ -37,6 +37,10 @@ MOTIONS = 1
 """Wanted: directions of the kinematic ellipsoid."""
 EFFORTS = 2
 """Wanted: directions of the force ellipsoids."""
+COUNTS = 8
+"""Wanted: lanes that are certain of all twelve counts."""
+REST = 4
+"""Wanted: twists that no motor drives, rates that leave the member at rest."""
 SMALLEST_SHARE = 32
 """A thread gets at least so many blocks, so that starting it pays."""
 
@@ -46,7 +50,8 @@ class RawLanes:
     """What lanes give, one row a configuration.
 
     Attributes:
-        certain: Whether everything else in the row holds; other rows are for the reference path.
+        certain: Whether everything else in the row holds, and the counts of the program; other rows are for
+            the reference path.
         residual: Largest gap of a loop in units of the characteristic length.
         angle: Uncertainty of the motions as an angle [rad].
         efficiencies: N x f finite kinematic efficiencies, largest first.  The finite efficiencies of the
@@ -56,6 +61,8 @@ class RawLanes:
         rates: N x f x n_a their motor side.
         wrenches: N x f x d unit directions of the finite force efficiencies, largest first; or None.
         torques: N x f x n_a their motor side.
+        free: N x free x d orthonormal twists, in lengths of the metric; None unless wanted.
+        idle: N x idle x n_a orthonormal rates, in lengths of the metric.
     """
 
     certain: NDArray[np.bool_]
@@ -67,6 +74,8 @@ class RawLanes:
     rates: NDArray[np.float64] | None
     wrenches: NDArray[np.float64] | None
     torques: NDArray[np.float64] | None
+    free: NDArray[np.float64] | None
+    idle: NDArray[np.float64] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +88,7 @@ class LaneProgram:
         mechanism: The mechanism.
         flat: Its arrays.
         plan: Ranks, structure and orders.
-        code: The plan's tables with a list of all columns behind them.
+        code: The tables of the plan.
         constants: Geometry, metrics and doubts; what a lane may have of its own.
         general: Whether constants may differ from lane to lane.
     """
@@ -116,11 +125,16 @@ class LaneProgram:
         flat = flatten(mechanism, general=general)
         models = _generic([mechanism.linearize(q) for q in (mechanism.home, *samples)])
         constants, where = _constants(mechanism, flat, models[0], weights)
-        plan = make_plan(
-            flat, mechanism.layout, [m.ledger.matrix("all") for m in models], models[0].ledger.summary, where
-        )
-        columns = np.arange(flat.code[t.COLUMNS])
-        return LaneProgram(mechanism, flat, plan, np.concatenate([plan.code, columns]), constants, general)
+        plan = make_plan(flat, mechanism.layout, [m.ledger for m in models], where)
+        return LaneProgram(mechanism, flat, plan, plan.code, constants, general)
+
+    @property
+    def twelve(self) -> TwelveCounts | None:
+        """The twelve counts of every configuration that is certain when `COUNTS` are wanted.
+
+        None where no sample was certain of them: then they cannot be wanted.
+        """
+        return self.plan.twelve
 
     @property
     def counts(self) -> SummaryCounts:
@@ -153,15 +167,28 @@ class LaneProgram:
         Args:
             values: N x values, in the order of the configuration [m, rad, quaternions w x y z].
             constants: N x constants (`constants_of`) for dimensions that differ from lane to lane.
-            want: `MOTIONS` and `EFFORTS`, added up.
+            want: `MOTIONS`, `EFFORTS`, `REST` and `COUNTS`, added up.
             threads: Threads to use; by default one a core.
         """
-        n = len(values)
-        f, n_a, d = self.plan.finite, int(self.code[t.MOTORS]), int(self.code[t.TWIST])
-        out = np.empty((n, output_size(f, n_a, d, want)))
-        if n:
+        out = np.empty((len(values), self.outputs(want)))
+        if len(values):
             self._run(values, constants, want, threads, out)
-        return _raw(out, f, n_a, d, want)
+        return self.named(out, want)
+
+    @property
+    def roots(self) -> tuple[Vector, Vector]:
+        """Roots of the weights of the motor rates and of the twist components."""
+        size, n_a = int(self.code[t.MOTORS] + self.code[t.TWIST]), int(self.code[t.MOTORS])
+        roots = self.constants[int(self.code[t.METRIC]) + 2 * size :][:size]
+        return roots[:n_a], roots[n_a:]
+
+    def outputs(self, want: int) -> int:
+        """Numbers that a kernel writes for one configuration."""
+        return output_size(self.counts, int(self.code[t.MOTORS]), int(self.code[t.TWIST]), want)
+
+    def named(self, out: Matrix, want: int) -> RawLanes:
+        """What a kernel wrote, N x `outputs(want)`, by name; views, no copies."""
+        return _raw(out, self.counts, int(self.code[t.MOTORS]), int(self.code[t.TWIST]), want)
 
     def _run(
         self, values: Matrix, constants: Matrix | None, want: int, threads: int | None, out: Matrix
@@ -193,7 +220,7 @@ class LaneProgram:
             constants: N x constants for dimensions that differ from lane to lane.
         """
         base, given = self._geometry(constants)
-        return dense_matrices(self.code, len(self.plan.code), given, base, values)
+        return dense_matrices(self.code, int(self.code[t.EVERY_COLUMN]), given, base, values)
 
     def _geometry(self, constants: Matrix | None) -> tuple[int, Any]:
         """First slot after constants, and the constants."""
@@ -245,20 +272,18 @@ def _constants(
     return np.concatenate(parts), where
 
 
-def _raw(out: Matrix, f: int, n_a: int, d: int, want: int) -> RawLanes:
+def _raw(out: Matrix, counts: SummaryCounts, n_a: int, d: int, want: int) -> RawLanes:
     """Named parts of the results."""
-    n = len(out)
+    f = counts.coordinated
+    shapes = [
+        (want & MOTIONS, f, d), (want & MOTIONS, f, n_a), (want & EFFORTS, f, d), (want & EFFORTS, f, n_a),
+        (want & REST, counts.indeterminacy, d), (want & REST, counts.redundancy, n_a),
+    ]  # fmt: skip
     at = 3 + 2 * f
     sides: list[NDArray[np.float64] | None] = []
-    for wanted in (want & MOTIONS, want & EFFORTS):
-        if not wanted:
-            sides += [None, None]
-            continue
-        sides += [
-            out[:, at : at + f * d].reshape(n, f, d),
-            out[:, at + f * d : at + f * (d + n_a)].reshape(n, f, n_a),
-        ]
-        at += f * (d + n_a)
+    for wanted, count, size in shapes:
+        sides.append(out[:, at : at + count * size].reshape(len(out), count, size) if wanted else None)
+        at += count * size if wanted else 0
     return RawLanes(
         out[:, 0] == 1.0, out[:, 1], out[:, 2], out[:, 3 : 3 + f], out[:, 3 + f : 3 + 2 * f], *sides
     )

@@ -33,13 +33,15 @@ def relate(w: Slots, code: Code, constants: Slots, base: int, z: Lane) -> None:
     for limb in range(code[t.LIMBS]):
         entry = code[t.LIMB] + t.LIMB_ENTRY * limb
         if code[entry + 1] > 0:
-            _rows_on_motions(w, code, constants, base, entry, z)
+            _rows_on_motions(w, code, constants, base, entry, limb == 0, z)
         _next_basis(w, code, base, entry, z)
     _motions(w, code, base, z)
 
 
 @kernel
-def _rows_on_motions(w: Slots, code: Code, constants: Slots, base: int, entry: int, z: Lane) -> None:
+def _rows_on_motions(
+    w: Slots, code: Code, constants: Slots, base: int, entry: int, first: bool, z: Lane
+) -> None:
     """Reflections of the rows of one limb on (its motors, motions before), rows as columns."""
     rows, motors, own = code[entry + 1], code[entry + 2], code[entry + 3]
     before, d, widest = code[entry + 9], code[t.TWIST], code[t.WIDEST]
@@ -55,6 +57,9 @@ def _rows_on_motions(w: Slots, code: Code, constants: Slots, base: int, entry: i
             store(w, column + motors + j, z)
         for i in range(d):
             x = load(w, row + motors + i, z) * constant(constants, w, metric + code[t.MOTORS] + i, z)
+            if first:
+                store(w, column + motors + i, x)
+                continue
             for j in range(before):
                 place = column + motors + j
                 store(w, place, fma(x, load(w, basis + i * widest + j, z), load(w, place, z)))
@@ -63,7 +68,7 @@ def _rows_on_motions(w: Slots, code: Code, constants: Slots, base: int, entry: i
     trail = load(w, base + code[t.NOTES] + t.TRAIL, z)
     for r in range(code[entry + 6], rows):
         left = square_below(w, target + code[code[entry + 7] + r] * length, code[entry + 6], length, z)
-        trail = larger(left, trail)
+        trail = larger(trail, left)
     store(w, base + code[t.NOTES] + t.TRAIL, trail)
 
 

@@ -30,7 +30,7 @@ ALIKE = 1.0 - 1e-9
 def finish(
     w: Slots, code: Code, constants: Slots, base: int, certain: Lane, settled: bool, want: int, z: Lane
 ) -> None:
-    """Results at `OUTPUT`: certain, residual, angle, then per finite motion efficiencies, bounds, directions.
+    """Results at `OUTPUT`: certain, residual, angle, efficiencies, bounds, and directions that are wanted.
 
     Args:
         w: The workspace.
@@ -39,7 +39,7 @@ def finish(
         base: See `frames.place_all`.
         certain: 1 where all ranks are certain.
         settled: Whether all rotations converged.
-        want: 1 with motion directions, 2 with effort directions.
+        want: Added up: 1 motion directions, 2 effort directions, 4 free twists and idle rates.
         z: Zero.
     """
     out, notes = base + code[t.OUTPUT], base + code[t.NOTES]
@@ -59,8 +59,27 @@ def finish(
         ratio = of_twist / of_motors
         store(w, out + 3 + p, ratio)
         store(w, out + 3 + count + p, _bound(ratio, of_motors, of_twist, angle, z))
-    if want > 0:
+    if want & 3:
         _all_directions(w, code, constants, base, out + 3 + 2 * count, first, count, want, z)
+    if want & 4:
+        pairs = (want & 1) + (want >> 1 & 1)
+        size = code[t.MOTORS] + code[t.TWIST]
+        _free_and_idle(w, code, base, out + 3 + 2 * count + pairs * count * size, z)
+
+
+@kernel
+def _free_and_idle(w: Slots, code: Code, base: int, out: int, z: Lane) -> None:
+    """Twists of the motions that no motor drives, then rates of those that leave the member at rest."""
+    motors, d = code[t.MOTORS], code[t.TWIST]
+    size, k = motors + d, code[t.FREEDOM]
+    for p in range(code[t.FREE]):
+        for i in range(d):
+            store(w, out + i, load(w, base + code[t.MOTIONS] + p * size + motors + i, z))
+        out += d
+    for p in range(k - code[t.IDLE], k):
+        for i in range(motors):
+            store(w, out + i, load(w, base + code[t.MOTIONS] + p * size + i, z))
+        out += motors
 
 
 @kernel

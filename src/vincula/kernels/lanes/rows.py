@@ -196,56 +196,64 @@ def member_entries(w: Slots, code: Code, base: int, block: int, target: int, str
     x = load(w, point + 9, z) - load(w, origin + 9, z)
     y = load(w, point + 10, z) - load(w, origin + 10, z)
     v = load(w, point + 11, z) - load(w, origin + 11, z)
+    # In space and ground axes a row is written where it belongs; otherwise through scratch.
+    direct = code[t.TWIST] == 6 and code[t.BODY_AXES] == 0
+    scratch = base + code[t.SCRATCH]
     for r in range(rows):
-        scratch = base + code[t.SCRATCH]
-        _row_wrench(w, code, base, first + r, x, y, v, scratch, z)
+        if direct:
+            _row_wrench(w, code, base, first + r, x, y, v, carried, target + r, stride, z)
+            continue
+        _row_wrench(w, code, base, first + r, x, y, v, carried, scratch, 1, z)
+        written = scratch
         if code[t.BODY_AXES] == 1:
             _into_axes(w, origin, scratch, scratch + 6, z)
-            scratch += 6
+            written = scratch + 6
         for k in range(code[t.TWIST]):
             component = k
             if code[t.TWIST] == 3 and k == 2:
                 component = 5
-            value = load(w, scratch + component, z)
-            if carried > 0:
-                value = neg(value)
-            store(w, target + k * stride + r, value)
+            store(w, target + k * stride + r, load(w, written + component, z))
 
 
 @kernel
 def _row_wrench(
-    w: Slots, code: Code, base: int, row: int, x: Lane, y: Lane, v: Lane, target: int, z: Lane
-) -> None:
-    """A row as six components on the member's twist: push, and arm x push + turn."""
+    w: Slots, code: Code, base: int, row: int, x: Lane, y: Lane, v: Lane, carried: int, target: int,
+    stride: int, z: Lane,
+) -> None:  # fmt: skip
+    """A row on the member's twist, times -carried: push, and arm x push + turn."""
     entry = code[t.ROW] + t.ROW_ENTRY * row
     kind, frame, axis = code[entry], base + code[entry + 1], code[entry + 2]
-    one = splat(1.0, z)
-    if kind == t.TURN_GROUND or kind == t.TURN_FRAME:
-        for i in range(3):
-            store(w, target + i, z)
-            if kind == t.TURN_FRAME:
-                store(w, target + 3 + i, load(w, frame + 3 * i + axis, z))
-            elif i == axis:
-                store(w, target + 3 + i, one)
-            else:
-                store(w, target + 3 + i, z)
-        return
-    for i in range(3):
-        if kind == t.PUSH_FRAME:
-            store(w, target + i, load(w, frame + 3 * i + axis, z))
-        elif kind == t.GENERAL:
-            store(w, target + i, load(w, frame + i, z))
-        elif i == axis:
-            store(w, target + i, one)
-        else:
-            store(w, target + i, z)
-    a, b, c = load(w, target, z), load(w, target + 1, z), load(w, target + 2, z)
-    p, q, s = fnma(v, b, y * c), fnma(x, c, v * a), fnma(y, a, x * b)
+    a, b, c = _row_part(w, kind, frame, axis, False, z)
+    p, q, s = _row_part(w, kind, frame, axis, True, z)
+    if carried > 0:
+        a, b, c, p, q, s = neg(a), neg(b), neg(c), neg(p), neg(q), neg(s)
+    if kind == t.PUSH_GROUND or kind == t.PUSH_FRAME or kind == t.GENERAL:
+        p, q, s = p + fnma(v, b, y * c), q + fnma(x, c, v * a), s + fnma(y, a, x * b)
+    store(w, target, a)
+    store(w, target + stride, b)
+    store(w, target + 2 * stride, c)
+    store(w, target + 3 * stride, p)
+    store(w, target + 4 * stride, q)
+    store(w, target + 5 * stride, s)
+
+
+@kernel
+def _row_part(w: Slots, kind: int, frame: int, axis: int, turn: bool, z: Lane) -> tuple[Lane, Lane, Lane]:
+    """Push or turn of a row in ground axes."""
     if kind == t.GENERAL:
-        p, q, s = p + load(w, frame + 3, z), q + load(w, frame + 4, z), s + load(w, frame + 5, z)
-    store(w, target + 3, p)
-    store(w, target + 4, q)
-    store(w, target + 5, s)
+        if turn:
+            frame += 3
+        return load(w, frame, z), load(w, frame + 1, z), load(w, frame + 2, z)
+    if turn == (kind == t.PUSH_GROUND or kind == t.PUSH_FRAME):
+        return z, z, z
+    if kind == t.PUSH_FRAME or kind == t.TURN_FRAME:
+        return load(w, frame + axis, z), load(w, frame + 3 + axis, z), load(w, frame + 6 + axis, z)
+    one = splat(1.0, z)
+    if axis == 0:
+        return one, z, z
+    if axis == 1:
+        return z, one, z
+    return z, z, one
 
 
 @kernel

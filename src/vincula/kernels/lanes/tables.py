@@ -181,6 +181,19 @@ DOUBT: Final = 55
 OUTPUT: Final = 56
 """Slot of the results."""
 TOTAL: Final = 57
+"""Slots altogether, without those for the twelve counts."""
+WHOLE: Final = 58
+"""Slot of the whole matrix A, then of the one whose rank is asked for."""
+WHOLE_FACTORS: Final = 59
+"""Slot of its factors and of a vector."""
+EVERY_COLUMN: Final = 60
+"""A list of all joint columns."""
+RANKS: Final = 61
+"""Entries for J_a, G^T, [J_a G^T] and the test matrix: rows, rank, columns (number), order (place), then the
+columns."""
+RANK_SPACE: Final = 62
+"""Length of such an entry."""
+TOTAL_WITH_COUNTS: Final = 63
 """Slots altogether."""
 
 # Notes, slots from `NOTES` on
@@ -208,8 +221,9 @@ NOTE_COUNT: Final = 10
 
 # A front: rows, pivots, their rank, other columns, rows handed on, mode, member, slot of what is handed on
 # (row after row), blocks (place, number), columns (place), children (place, number), order (place),
-# reflections, limb
-FRONT_ENTRY: Final = 16
+# reflections, limb; then of limbs with several fronts: slot of inverses (-1 in the others), passive columns
+# among the others (number, place: position here, index in the next front or -1), next front (-1 for the last)
+FRONT_ENTRY: Final = 20
 BY_LEFT: Final = 0
 """Rows handed on are products with left null vectors."""
 BY_REFLECTION: Final = 1
