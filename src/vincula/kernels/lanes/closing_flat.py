@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.closing_forest import Forest, Given, forest_of
 from vincula.kernels.lanes.closing_order import Elimination, elimination, pair_entries
 from vincula.kernels.lanes.closing_scalars import Scalar, scalar_table, scalars_of
+from vincula.kernels.lanes.closing_unknowns import Unknowns
 from vincula.kernels.lanes.flatten import Builder
 from vincula.kernels.lanes.jit import Code
 from vincula.mechanism.closure_rows import Selection, contact_selection, joint_selection, whole_pose
@@ -56,17 +57,6 @@ class _Part:
     signs: dict[int, int]
 
 
-@dataclass(slots=True)
-class _Unknowns:
-    """Unknown rates so far: entries of their screws, and the values that they change."""
-
-    columns: list[list[int]] = field(default_factory=list)
-    of_joint: dict[str, list[int]] = field(default_factory=dict)
-    of_axis: dict[str, int] = field(default_factory=dict)
-    updates: list[tuple[int, int, int]] = field(default_factory=list)
-    directions: list[int] = field(default_factory=list)
-
-
 def closing_arrays(mechanism: Mechanism, given: Given) -> ClosingArrays:
     """The flat arrays of a mechanism's closing.
 
@@ -84,7 +74,7 @@ class _Assembly:
         self.builder = Builder(mechanism, general=False)
         self.forest = forest_of(mechanism, given)
         self.plan = [0] * c.HEADER
-        self.unknowns = _Unknowns()
+        self.unknowns = Unknowns(self.builder, self.forest.held)
         self._inputs()
         self.paths: dict[str, tuple[tuple[int, int], ...]] = {GROUND: ()}
         self.builder.carrier = {GROUND: (-1, Pose.identity(mechanism.space.translations))}
@@ -152,7 +142,7 @@ class _Assembly:
         start, target = self._moved(joint, here, near, 1 if forward else -1)
         builder.carrier[there] = (target, far.inverse())
         first, second = (start, target) if forward else (target, start)
-        columns = self._add_unknowns(joint, first, second)
+        columns = self.unknowns.add(joint, first, second)
         sign = 1 if forward else -1
         self.paths[there] = self.paths[here] + tuple((k, sign) for k in columns)
 
@@ -174,44 +164,6 @@ class _Assembly:
             return len(kind.steps) > 1
         return not (all(step in ("Rz", "Tz", "H") for step in kind.steps) or kind.steps == ("S",))
 
-    def _add_unknowns(self, joint: Joint, first: int, second: int) -> list[int]:
-        """Unknown rates of a joint with frames A and B in these slots."""
-        kind, known = self.mechanism.type_of(joint), self.unknowns
-        value = self.builder.code[t.VALUE_SLOT] + self.builder.value_of[joint.name] if kind.values else 0
-        names, axis, own = kind.axis_names(joint.name), 0, []
-        for step in kind.steps:
-            count = 3 if step == "S" else 1
-            if names[axis] not in self.forest.held:
-                start = len(known.columns)
-                known.updates.append((c.BALL if step == "S" else c.NUMBER, value, start))
-                for k in range(count):
-                    known.of_axis[names[axis + k]] = start + k
-                    known.columns.append(self._screw(joint, step, k, first, second))
-                own += range(start, start + count)
-            axis += count
-            value += 4 if step == "S" else 1
-        known.of_joint[joint.name] = own
-        return own
-
-    def _screw(self, joint: Joint, step: str, k: int, first: int, second: int) -> list[int]:
-        """Frame, axis, centre, turn and slide of one unknown."""
-        planar = self.mechanism.type_of(joint).planar
-        if step[0] == "T":
-            return [first, "xyz".index(step[1]), second, 0, -2]
-        if step == "S":
-            return [second, k, second, 1, -1]
-        if step == "R2":
-            return [self._direction(second, joint.second_axis), -1, second, 1, -1]
-        if step == "H":
-            advance = self.builder.constant(joint.lead / (2.0 * np.pi) / self.builder.length)
-            return [first, 2, second, 1, advance]
-        return [second if planar else first, 2, second, 1, -1]
-
-    def _direction(self, frame: int, axis: Vector) -> int:
-        target = self.builder.slot(3)
-        self.unknowns.directions += [target, frame, self.builder.constant(*axis)]
-        return target
-
     # Parts with gaps ---------------------------------------------------------------------------------
 
     def _signs(self, first: str, second: str) -> dict[int, int]:
@@ -227,7 +179,7 @@ class _Assembly:
         for joint in self.forest.own:
             start, wanted = self._moved(joint, joint.first, joint.frame_on_first, 1)
             signs = self._signs(joint.first, joint.second)
-            signs.update(dict.fromkeys(self._add_unknowns(joint, start, wanted), -1))
+            signs.update(dict.fromkeys(self.unknowns.add(joint, start, wanted), -1))
             there = builder.place(joint.second, joint.frame_on_second)
             yield _Part(wanted, there, whole_pose(self.mechanism.space.translations), 0, signs)
 
@@ -284,6 +236,7 @@ class _Assembly:
         self._table(c.MEASURED, [len(self.measured) // 4, *self.measured])
         plan[c.STATE_VALUES] = builder.code[t.VALUES]
         plan[c.STATE] = builder.slot(2 * plan[c.STATE_VALUES] + 3 * plan[c.INPUTS])
+        plan[c.ANCHOR] = builder.slot(plan[c.STATE_VALUES] + plan[c.INPUTS])
         plan[c.SLOTS] = builder.slots
         builder.code[t.TAPE_LENGTH] = len(builder.tape)
         builder.table(t.TAPE, [number for step in builder.tape for number in step])
@@ -312,9 +265,9 @@ class _Assembly:
     def _updates(self, place: dict[int, int]) -> None:
         """Where steps go: values, with their unknowns' places in the order of elimination."""
         numbers: list[int] = []
-        for kind, value, start in self.unknowns.updates:
-            own = [place[start + k] for k in range(3)] if kind == c.BALL else [place[start], 0, 0]
-            numbers += [kind, value, *own]
+        for how, value, start in self.unknowns.updates:
+            own = [place[start + k] for k in range(3)] if how == c.BALL else [place[start], 0, 0]
+            numbers += [how, value, *own]
         self._table(c.UPDATE, [len(self.unknowns.updates), *numbers])
         balls: list[int] = []
         for joint in self.mechanism.all_joints:

@@ -82,7 +82,9 @@ def _refuse_partly_held(mechanism: Mechanism, joint: Joint, held: Iterable[str])
     axes = kind.axis_names(joint.name)
     count = len(set(axes).intersection(held))
     if "S" in kind.steps and 0 < count < len(axes):
-        raise Unsupported(f"some axes of {joint.name!r} are held and others not: the reference path does that")
+        raise Unsupported(
+            f"some axes of {joint.name!r} are held and others not: the reference path does that"
+        )
 
 
 def _one_body(mechanism: Mechanism, roots: list[str]) -> bool:

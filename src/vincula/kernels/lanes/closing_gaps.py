@@ -97,7 +97,7 @@ def _along(w: Slots, slot: int, stride: int, x: Lane, y: Lane, v: Lane, z: Lane)
 
 @kernel
 def _turn_gaps(w: Slots, plan: Code, constants: Slots, base: int, entry: int, gap: int, z: Lane) -> Lane:
-    """Gaps of orientation, the directions about which they open, and the cosine that rules out half a turn."""
+    """Gaps of orientation, the directions they open about, the cosine that rules out half a turn."""
     turns = plan[entry + 3]
     if turns == c.WHOLE:
         return _whole_turn(w, plan, base, entry, gap, z)
@@ -149,31 +149,31 @@ def _turn_components(w: Slots, plan: Code, base: int, entry: int, gap: int, z: L
     half, total = splat(0.5, z), z
     trace = z
     for k in range(3):
-        trace = trace + _columns_product(w, one + k, two + k, z)
+        trace = trace + columns_product(w, one + k, two + k, z)
     for k in range(3):
         if mask & (1 << k):
             i, j = (k + 1) % 3, (k + 2) % 3
             # Component k of the rotation vector times sin / angle: (M[j, i] - M[i, j]) / 2.
-            value = half * (_columns_product(w, one + j, two + i, z) - _columns_product(w, one + i, two + j, z))
+            value = half * (columns_product(w, one + j, two + i, z) - columns_product(w, one + i, two + j, z))
             store(w, gap, value)
             total = fma(value, value, total)
+            p, q, r = (columns_product(w, one + k, two, z), columns_product(w, one + k, two + 1, z),
+                       columns_product(w, one + k, two + 2, z))  # fmt: skip
             for axis in range(3):
-                direction = trace * load(w, one + 3 * axis + k, z)
-                for other in range(3):
-                    m = _columns_product(w, one + k, two + other, z)
-                    direction = fnma(m, load(w, one + 3 * axis + other, z), direction)
-                store(w, rows + axis, half * direction)
-            _seen(w, plan, base, trace - _columns_product(w, one + k, two + k, z), z)
+                row = one + 3 * axis
+                direction = fma(p, load(w, row, z), fma(q, load(w, row + 1, z), r * load(w, row + 2, z)))
+                store(w, rows + axis, half * fma(trace, load(w, row + k, z), neg(direction)))
+            _seen(w, plan, base, trace - columns_product(w, one + k, two + k, z), z)
             gap += 1
             rows += 3
     return total
 
 
 @kernel
-def _columns_product(w: Slots, one: int, two: int, z: Lane) -> Lane:
+def columns_product(w: Slots, one: int, two: int, z: Lane) -> Lane:
     """Scalar product of two columns of rotations."""
-    return fma(load(w, one, z), load(w, two, z),
-               fma(load(w, one + 3, z), load(w, two + 3, z), load(w, one + 6, z) * load(w, two + 6, z)))  # fmt: skip
+    rest = fma(load(w, one + 3, z), load(w, two + 3, z), load(w, one + 6, z) * load(w, two + 6, z))
+    return fma(load(w, one, z), load(w, two, z), rest)
 
 
 @kernel

@@ -1,7 +1,7 @@
 """Gauss-Newton in lanes: closed from where the values are, or given up in that lane.
 
-A lane is given up when steps do not shrink as near a solution they must (by half, Newton and Kantorovich): what it
-would find need not be on the branch it started on.  Whoever asked then takes shorter ways.
+A lane is given up when steps do not shrink as near a solution they must (by half, Newton and Kantorovich):
+what it would find need not be on the branch it started on.  Whoever asked then takes shorter ways.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from vincula.kernels.lanes.vector import (
     either,
     fma,
     fnma,
+    less,
     load,
     more,
     rsqrt,
@@ -29,6 +30,8 @@ from vincula.kernels.lanes.vector import (
 
 MOST_STEPS: Final = 12
 """Steps after which a lane is given up."""
+MOST_SEARCHED: Final = 60
+"""The same where any branch will do."""
 LONGEST_STEP: Final = 0.7
 """No unknown may move by more in one step [rad, or lengths L]."""
 SHRINKS: Final = 0.5
@@ -49,7 +52,7 @@ DAMPING: Final = 1e-2
 
 @kernel
 def close_lanes(
-    w: Slots, code: Code, plan: Code, constants: Slots, base: int, wanted: Lane, z: Lane
+    w: Slots, code: Code, plan: Code, constants: Slots, base: int, wanted: Lane, strict: bool, z: Lane
 ) -> tuple[Lane, Lane, Lane]:
     """Close from the values in the workspace.
 
@@ -60,16 +63,20 @@ def close_lanes(
         constants: Constants.
         base: See `frames.place_all`.
         wanted: 1 in lanes that are to move, 0 in the others.
+        strict: Whether lanes are given up whose steps do not shrink; otherwise steps are cut short, the
+            damping grows where gaps do not shrink, and what is found may be on another branch.
         z: Zero.
 
     Returns:
         1 in lanes that were closed, the number of steps, the sum of the squares of the gaps.
     """
-    half = splat(0.5, z)
+    half, one, longest = splat(0.5, z), splat(1.0, z), splat(LONGEST_STEP, z)
     rounding = splat(ROUNDING * ROUNDING * plan[c.EQUATIONS], z)
-    live, closed, steps, before = wanted, z, z, splat(1e300, z)
-    gap = gaps_at(w, code, plan, constants, base, z)
-    for _ in range(MOST_STEPS):
+    live, closed, steps, before, damping = wanted, z, z, splat(1e300, z), splat(DAMPING, z)
+    gap = before
+    for step in range(MOST_STEPS if strict else MOST_SEARCHED):
+        last = gap
+        gap = gaps_at(w, code, plan, constants, base, z)
         done = either(
             at_most(gap, rounding),
             both(at_most(before, splat(POLISHED, z)), at_most(gap, splat(CLOSED * CLOSED, z))),
@@ -78,17 +85,29 @@ def close_lanes(
         live = select(done, z, live)
         if not some_lane(more(live, half)):
             break
-        damping = fma(splat(DAMPING, z), gap, splat(LEAST_DAMPING, z))
-        size = solve_step(w, plan, constants, base, damping, z)
-        shrinks = either(at_most(size, splat(SHRINKS, z) * before), at_most(size, splat(NEAR, z)))
-        good = both(at_most(size, splat(LONGEST_STEP, z)), shrinks)
-        live = select(good, live, z)
+        if step > 0 and not strict:
+            shrunk = select(less(gap, splat(0.25, z) * last), splat(0.2, z), one)
+            damping = damping * select(less(gap, last), shrunk, splat(4.0, z))
+        size = solve_step(w, plan, constants, base, fma(damping, gap, splat(LEAST_DAMPING, z)), z)
+        short = at_most(size, longest)
+        if strict:
+            shrinks = either(at_most(size, splat(SHRINKS, z) * before), at_most(size, splat(NEAR, z)))
+            live = select(both(short, shrinks), live, z)
+        else:
+            _shorten(w, plan, base, select(short, one, longest / size), z)
         steps = steps + live
         before = size
         apply_step(w, plan, base, live, z)
-        gap = gaps_at(w, code, plan, constants, base, z)
     sided = more(load(w, base + plan[c.SIDE], z), z)
     return select(sided, closed, z), steps, gap
+
+
+@kernel
+def _shorten(w: Slots, plan: Code, base: int, share: Lane, z: Lane) -> None:
+    """Take a share of the step."""
+    step = base + plan[c.STEP]
+    for k in range(plan[c.UNKNOWNS]):
+        store(w, step + k, load(w, step + k, z) * share)
 
 
 @kernel

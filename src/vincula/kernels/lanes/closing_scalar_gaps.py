@@ -1,4 +1,4 @@
-"""Couplings and motors over several axes in lanes: gaps, and their rows; the table is that of `closing_scalars`."""
+"""Couplings and motors over several axes in lanes: gaps and rows, from the table of `closing_scalars`."""
 
 from __future__ import annotations
 
@@ -27,14 +27,18 @@ def scalar_gaps(w: Slots, plan: Code, constants: Slots, base: int, z: Lane) -> L
     for _ in range(plan[plan[c.SCALAR]]):
         gap, count = base + plan[at], plan[at + 1]
         at += 2
-        value = _terms(w, plan, constants, base, at, count, constant(constants, w, plan[at + 2 * count], z), z)
+        value = _terms(
+            w, plan, constants, base, at, count, constant(constants, w, plan[at + 2 * count], z), z
+        )
         at += 2 * count + 1
         if plan[at] >= 0:
             given = load(w, base + plan[c.INPUT] + plan[at], z)
             value = fnma(given, constant(constants, w, plan[at + 1], z), value)
         count = plan[at + 2]
         at += 3
-        inner = _terms(w, plan, constants, base, at, count, constant(constants, w, plan[at + 2 * count], z), z)
+        inner = _terms(
+            w, plan, constants, base, at, count, constant(constants, w, plan[at + 2 * count], z), z
+        )
         at += 2 * count + 1
         degree, first = plan[at], plan[at + 1]
         curve, slope = z, z

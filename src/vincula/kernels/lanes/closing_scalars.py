@@ -1,9 +1,9 @@
 """Couplings, and motors over several axes, as equations of closing between scalar values.
 
 In the table one equation is: gap slot; number of terms, then value slot and coefficient (a constant) of each;
-constant offset; input slot and its factor, or -1 -1; number of terms inside the polynomial, these terms, their offset,
-number of coefficients of the polynomial and the first; number of unknowns, then unknown, rate and inner rate
-(constants) of each; entries of the normal matrix; slot of the Jacobian.
+constant offset; input (-1 for none) and its factor; number of terms inside the polynomial, these terms,
+their offset, number of coefficients of the polynomial and the first; number of unknowns, then unknown, rate
+and inner rate (constants) of each; entries of the normal matrix; slot of the Jacobian.
 """
 
 from __future__ import annotations
@@ -102,7 +102,11 @@ def scalar_table(
         numbers += [builder.constant(one.offset), source, builder.constant(one.factor), len(one.inner)]
         for slot, coefficient in one.inner:
             numbers += [slot, builder.constant(coefficient)]
-        numbers += [builder.constant(one.inner_offset), len(one.polynomial), builder.constant(*one.polynomial)]
+        numbers += [
+            builder.constant(one.inner_offset),
+            len(one.polynomial),
+            builder.constant(*one.polynomial),
+        ]
         columns = sorted((place[unknown], *rates) for unknown, rates in one.signs.items())
         numbers.append(len(columns))
         for column, rate, inner in columns:

@@ -74,41 +74,47 @@ def _entries(
     p: Lane, q: Lane, s: Lane, a: Lane, b: Lane, d: Lane, z: Lane,
 ) -> None:  # fmt: skip
     """One column: rates of all gaps for the velocity (p, q, s) of B's origin and the turning (a, b, d)."""
-    one, offset, turns, mask = base + plan[entry], plan[entry + 2], plan[entry + 3], plan[entry + 4]
-    for k in range(3):
-        if offset & (1 << k):
-            if offset & c.ALL:
-                value = p
-                if k == 1:
-                    value = q
-                elif k == 2:
-                    value = s
-            else:
-                value = fma(load(w, one + k, z), p, fma(load(w, one + 3 + k, z), q, load(w, one + 6 + k, z) * s))
-            store(w, target, value)
-            target += 1
-    if turns == c.WHOLE:
+    one, offset, turns = base + plan[entry], plan[entry + 2], plan[entry + 3]
+    if offset & c.ALL:
+        target = _picked(w, offset, target, p, q, s, z)
+    else:
         for k in range(3):
-            if mask & (1 << k):
-                value = a
-                if k == 1:
-                    value = b
-                elif k == 2:
-                    value = d
-                store(w, target, value)
+            if offset & (1 << k):
+                rest = fma(load(w, one + 3 + k, z), q, load(w, one + 6 + k, z) * s)
+                store(w, target, fma(load(w, one + k, z), p, rest))
                 target += 1
+    if turns == c.WHOLE:
+        _picked(w, plan[entry + 4], target, a, b, d, z)
     elif turns != c.FREE:
-        rows = base + plan[entry + 8]
-        for k in range(_turn_count(plan, entry)):
-            at = rows + 3 * k
-            store(w, target + k, fma(load(w, at, z), a, fma(load(w, at + 1, z), b, load(w, at + 2, z) * d)))
+        at, last = base + plan[entry + 8], base + plan[entry + 8] + 3 * _turn_count(plan, entry)
+        while at < last:
+            rest = fma(load(w, at + 1, z), b, load(w, at + 2, z) * d)
+            store(w, target, fma(load(w, at, z), a, rest))
+            target += 1
+            at += 3
+
+
+@kernel
+def _picked(w: Slots, mask: int, target: int, x: Lane, y: Lane, v: Lane, z: Lane) -> int:
+    """Write the components of a vector that a mask names; the slot after them."""
+    if mask & 1:
+        store(w, target, x)
+        target += 1
+    if mask & 2:
+        store(w, target, y)
+        target += 1
+    if mask & 4:
+        store(w, target, v)
+        target += 1
+    return target
 
 
 @kernel
 def _turn_count(plan: Code, entry: int) -> int:
     """Number of gaps of orientation."""
-    offset, count = plan[entry + 2], plan[entry + 7]
-    return count - ((offset & 1) + ((offset >> 1) & 1) + ((offset >> 2) & 1))
+    offset = plan[entry + 2]
+    count: int = plan[entry + 7] - ((offset & 1) + ((offset >> 1) & 1) + ((offset >> 2) & 1))
+    return count
 
 
 @kernel
@@ -137,7 +143,7 @@ def _add_part(w: Slots, plan: Code, base: int, entry: int, z: Lane) -> None:
 
 @kernel
 def _eliminate(w: Slots, plan: Code, base: int, damping: Lane, z: Lane) -> None:
-    """L D L^T of the damped normal matrix, the right-hand side carried along; the inverse of D on the diagonal."""
+    """L D L^T of the damped normal matrix, right-hand side carried along; 1 / D on the diagonal."""
     normal, step = base + plan[c.NORMAL], base + plan[c.STEP]
     one, at = splat(1.0, z), plan[c.FACTOR]
     for k in range(plan[c.UNKNOWNS]):

@@ -24,6 +24,8 @@ ENTRIES: Final = 4
 """Entries of the normal matrix and its factor."""
 SLOTS: Final = 5
 """Slots of the workspace in all."""
+ANCHOR: Final = 23
+"""Slots of the values, and of what was given, where a walk sets out."""
 STATE_VALUES: Final = 22
 """Number of configuration values."""
 POSE: Final = 6
@@ -39,8 +41,8 @@ NORMAL: Final = 9
 STEP: Final = 10
 """Slots of its right-hand side, then of the step."""
 STATE: Final = 11
-"""Slots that walking keeps: values last closed, their last way, what was given there, its last way, what is asked
-for."""
+"""Slots that walking keeps: values last closed, their last way, what was given there, its last way, what is
+asked for."""
 SIDE: Final = 12
 """Slot of the smallest cosine that tells a gap of zero from half a turn."""
 
@@ -52,8 +54,8 @@ BLOCK: Final = 14
 DIRECTION: Final = 15
 """Constant axes to turn with a frame: number, then target slot, frame slot, constant."""
 FACTOR: Final = 16
-"""For every unknown: entry of its diagonal, number below, their places, then entries that they change; where the
-parts of the unknowns begin stands just before."""
+"""For every unknown: entry of its diagonal, number below, their places, then entries that they change; where
+the parts of the unknowns begin stands just before."""
 UPDATE: Final = 17
 """Values that change: number, then kind, value slot, unknown(s)."""
 HELD: Final = 18
@@ -69,9 +71,9 @@ QUATERNIONS: Final = 21
 # (-1 none, -2 one, else a constant)
 COLUMN_ENTRY: Final = 5
 
-# A part: frames A and B, components of the offset (a bit each, 8: all, in ground axes), how turns are measured,
-# their components, constant, first gap, number of gaps, slot of turned rows, where its unknowns are in `plan`
-# (unknown and sign, then entries of the normal matrix), their number, slot of its Jacobian
+# A part: frames A and B, components of the offset (a bit each, 8: all, in ground axes), how turns are
+# measured, their components, constant, first gap, number of gaps, slot of turned rows, where its unknowns are
+# in `plan` (unknown and sign, then entries of the normal matrix), their number, slot of its Jacobian
 BLOCK_ENTRY: Final = 12
 ALL: Final = 8
 FREE: Final = 0

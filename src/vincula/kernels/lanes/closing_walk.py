@@ -1,7 +1,7 @@
 """From one closed configuration to the next in lanes, on the same branch.
 
-Each lane holds a closed configuration and what is given there, and is carried to what is asked for:
-at once where that is near, else in shorter ways, which get shorter still where closing is given up and longer again
+Each lane holds a closed configuration and what is given there, and is carried to what is asked for: at once
+where that is near, else in shorter ways, which get shorter still where closing is given up and longer again
 where it is not.  Values are foretold along the last way where the new one goes on in its direction.
 """
 
@@ -11,6 +11,7 @@ from typing import Final
 
 from vincula.kernels.lanes import closing_tables as c
 from vincula.kernels.lanes import tables as t
+from vincula.kernels.lanes.closing_gaps import columns_product
 from vincula.kernels.lanes.closing_newton import close_lanes
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
 from vincula.kernels.lanes.vector import (
@@ -33,8 +34,8 @@ from vincula.kernels.lanes.vector import (
 
 LONGEST_WAY: Final = 0.35
 """What is given moves by no more at once [rad, or lengths L]."""
-SHORTEST_WAY: Final = 1e-5
-"""A lane that does not close over a way as short as this is left open."""
+SHORTEST_WAY: Final = 1e-4
+"""A lane that does not close over a way as short as this does not arrive."""
 MOST_WAYS: Final = 400
 """Ways tried before a lane is left open."""
 STRAIGHT: Final = 0.04
@@ -45,11 +46,10 @@ STRAIGHT: Final = 0.04
 def walk(
     w: Slots, code: Code, plan: Code, constants: Slots, base: int, target: int, wanted: Lane, z: Lane
 ) -> tuple[Lane, Lane, Lane]:
-    """Carry every lane to what is asked for, as far as it goes.
+    """Carry every lane to what is asked for; a lane that does not arrive stays where it was.
 
     Args:
-        w: The workspace; `STATE` begins with the values last closed, the last way of the values, what was given there, the
-            last way of that.
+        w: The workspace, with what `STATE` names.
         code: Values and frames.
         plan: Tables of closing.
         constants: Constants.
@@ -59,11 +59,13 @@ def walk(
         z: Zero.
 
     Returns:
-        1 in lanes that arrived, the number of steps, the sum of the squares of the gaps.
+        1 in lanes that arrived, 2 in lanes that close there after a jump; the number of steps; the sum of
+        the squares of the gaps.
     """
     half, one = splat(0.5, z), splat(1.0, z)
     live, arrived, steps, hope, gap = wanted, z, z, one, z
     reach = splat(LONGEST_WAY, z)
+    _remember(w, plan, base, more(wanted, half), z)
     for _ in range(MOST_WAYS):
         if not some_lane(more(live, half)):
             break
@@ -71,7 +73,7 @@ def walk(
         whole = at_most(left, reach)
         share = select(whole, one, reach / left)
         _set_out(w, code, plan, base, target, share, whole, live, hope, z)
-        closed, count, gap = close_lanes(w, code, plan, constants, base, live, z)
+        closed, count, gap = close_lanes(w, code, plan, constants, base, live, True, z)
         steps = steps + count
         good = more(closed, half)
         _keep(w, code, plan, base, good, z)
@@ -85,7 +87,60 @@ def walk(
         hope = select(good, one, select(more(live, half), z, hope))
         reach = select(good, longer, shorter)
         live = select(there, z, select(at_least(reach, splat(SHORTEST_WAY, z)), live, z))
+    lost = select(more(arrived, half), z, wanted)
+    if some_lane(more(lost, half)):
+        found, count, jumped = _jump(w, code, plan, constants, base, target, lost, z)
+        gap = select(more(lost, half), jumped, gap)
+        arrived, steps = arrived + found + found, steps + count
     return arrived, steps, gap
+
+
+@kernel
+def _jump(
+    w: Slots, code: Code, plan: Code, constants: Slots, base: int, target: int, lost: Lane, z: Lane
+) -> tuple[Lane, Lane, Lane]:
+    """Close lanes that did not arrive from where they set out, wherever that leads."""
+    half = splat(0.5, z)
+    going = more(lost, half)
+    _go_back(w, plan, base, going, z)
+    _set_out(w, code, plan, base, target, splat(1.0, z), at_least(lost, z), lost, z, z)
+    found, count, gap = close_lanes(w, code, plan, constants, base, lost, False, z)
+    _keep(w, code, plan, base, more(found, half), z)
+    _stop(w, plan, base, going, z)
+    return found, count, gap
+
+
+@kernel
+def _remember(w: Slots, plan: Code, base: int, setting: Lane, z: Lane) -> None:
+    """Keep where lanes set out."""
+    count, inputs, saved = plan[c.STATE_VALUES], plan[c.INPUTS], base + plan[c.STATE]
+    here, anchor = _given_here(plan, base), base + plan[c.ANCHOR]
+    for k in range(count):
+        store(w, anchor + k, select(setting, load(w, saved + k, z), load(w, anchor + k, z)))
+    for k in range(inputs):
+        store(w, anchor + count + k, select(setting, load(w, here + k, z), load(w, anchor + count + k, z)))
+
+
+@kernel
+def _go_back(w: Slots, plan: Code, base: int, going: Lane, z: Lane) -> None:
+    """Stand again where lanes set out."""
+    count, inputs, saved = plan[c.STATE_VALUES], plan[c.INPUTS], base + plan[c.STATE]
+    here, anchor = _given_here(plan, base), base + plan[c.ANCHOR]
+    for k in range(count):
+        store(w, saved + k, select(going, load(w, anchor + k, z), load(w, saved + k, z)))
+    for k in range(inputs):
+        store(w, here + k, select(going, load(w, anchor + count + k, z), load(w, here + k, z)))
+
+
+@kernel
+def _stop(w: Slots, plan: Code, base: int, going: Lane, z: Lane) -> None:
+    """Forget the last way: nothing is foretold from it."""
+    count, inputs, saved = plan[c.STATE_VALUES], plan[c.INPUTS], base + plan[c.STATE]
+    here = _given_here(plan, base)
+    for k in range(count):
+        store(w, saved + count + k, select(going, z, load(w, saved + count + k, z)))
+    for k in range(inputs):
+        store(w, here + inputs + k, select(going, z, load(w, here + inputs + k, z)))
 
 
 @kernel
@@ -102,7 +157,8 @@ def _distance(w: Slots, plan: Code, base: int, target: int, z: Lane) -> Lane:
 @kernel
 def _given_here(plan: Code, base: int) -> int:
     """Slot of what was given where the lane stands."""
-    return base + plan[c.STATE] + 2 * (plan[c.STATE_VALUES])
+    slot: int = base + plan[c.STATE] + 2 * plan[c.STATE_VALUES]
+    return slot
 
 
 @kernel
@@ -177,18 +233,13 @@ def _measure(w: Slots, plan: Code, base: int, good: Lane, z: Lane) -> None:
             y = load(w, two + 10, z) - load(w, one + 10, z)
             v = load(w, two + 11, z) - load(w, one + 11, z)
             for k in range(3):
-                offset = fma(load(w, one + k, z), x, fma(load(w, one + 3 + k, z), y, load(w, one + 6 + k, z) * v))
+                offset = fma(
+                    load(w, one + k, z), x, fma(load(w, one + 3 + k, z), y, load(w, one + 6 + k, z) * v)
+                )
                 store(w, value + k, select(good, offset, load(w, value + k, z)))
             value += 3
         _read_turn(w, one, two, value, good, z)
         at += 4
-
-
-@kernel
-def _product(w: Slots, one: int, two: int, z: Lane) -> Lane:
-    """Scalar product of two columns of rotations."""
-    return fma(load(w, one, z), load(w, two, z),
-               fma(load(w, one + 3, z), load(w, two + 3, z), load(w, one + 6, z) * load(w, two + 6, z)))  # fmt: skip
 
 
 @kernel
@@ -197,10 +248,14 @@ def _read_turn(w: Slots, one: int, two: int, value: int, good: Lane, z: Lane) ->
 
     Of the four ways to write it the one with the largest component loses no digits.
     """
-    r00, r11, r22 = _product(w, one, two, z), _product(w, one + 1, two + 1, z), _product(w, one + 2, two + 2, z)
-    r01, r10 = _product(w, one, two + 1, z), _product(w, one + 1, two, z)
-    r02, r20 = _product(w, one, two + 2, z), _product(w, one + 2, two, z)
-    r12, r21 = _product(w, one + 1, two + 2, z), _product(w, one + 2, two + 1, z)
+    r00, r11, r22 = (
+        columns_product(w, one, two, z),
+        columns_product(w, one + 1, two + 1, z),
+        columns_product(w, one + 2, two + 2, z),
+    )
+    r01, r10 = columns_product(w, one, two + 1, z), columns_product(w, one + 1, two, z)
+    r02, r20 = columns_product(w, one, two + 2, z), columns_product(w, one + 2, two, z)
+    r12, r21 = columns_product(w, one + 1, two + 2, z), columns_product(w, one + 2, two + 1, z)
     unit = splat(1.0, z)
     trace = r00 + r11 + r22
     a, b, d, e = unit + trace, r21 - r12, r02 - r20, r10 - r01

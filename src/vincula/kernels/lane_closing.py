@@ -1,0 +1,112 @@
+"""Batches of motor positions or poses: closed in lanes, evaluated in lanes, and the rest one by one.
+
+A lane that was followed on its branch counts.  One that closes only beyond a jump, or almost, is closed again
+by `Mechanism.close` from the last configuration before it; one that is clearly open has no closure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vincula.arrays import Matrix
+from vincula.errors import ClosureError, VinculaError
+from vincula.kernels.evaluation import NO_CLOSURE
+from vincula.kernels.inputs import Batch, Given
+from vincula.kernels.lane_batch import evaluate_in_lanes
+from vincula.kernels.lane_path import LaneWriters, numba_is_installed
+from vincula.kernels.one_by_one import MOST_REASONS, Reasons, evaluate_one_by_one
+from vincula.kernels.plans import Plan
+from vincula.kernels.reference_path import Arrays, Outcome
+from vincula.kernels.variants import Variants
+from vincula.mechanism.configuration import Configuration
+from vincula.mechanism.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from vincula.kernels.lanes.closing import ClosedLanes, LaneClosing
+
+OPEN: Final = 1e-6
+"""A gap that stays above this, times the characteristic length, does not close."""
+
+
+def lane_closing(mechanism: Mechanism, given: Given) -> LaneClosing | str:
+    """The closing of a mechanism in lanes; or why only the reference path closes it."""
+    if not numba_is_installed():
+        return "numba is not installed"
+    if given == "configuration":
+        return "whole configurations are given"
+    from vincula.kernels.lanes.closing import LaneClosing
+
+    try:
+        return LaneClosing.prepare(mechanism, given)
+    except VinculaError as error:
+        return str(error)
+
+
+def closed_start(closing: LaneClosing, batch: Batch) -> Configuration | str:
+    """Where the first lane of every stretch starts, closed; or why there is no such configuration."""
+    home = closing.mechanism.home
+    start = home if batch.first is None else home.from_flat(batch.first)
+    if (start is home and closing.home_is_closed) or closing.starts_at(start):
+        return start
+    try:
+        return closing.closed_near(start)
+    except ClosureError as error:
+        return str(error)
+
+
+def evaluate_closed(
+    closing: LaneClosing,
+    start: Configuration,
+    writers: LaneWriters,
+    variants: Variants,
+    plan: Plan,
+    batch: Batch,
+    arrays: Arrays,
+    reasons: Reasons,
+    threads: int,
+) -> None:
+    """Close and evaluate a batch of motor positions or poses of one geometry.
+
+    Args:
+        closing: The closing in lanes.
+        start: Where the first lane of every stretch starts, closed.
+        writers: The quantities in lanes.
+        variants: The mechanisms by parameter values.
+        plan: The quantities in the reference path.
+        batch: The batch.
+        arrays: One array a quantity, with anything in it.
+        reasons: Where reasons go.
+        threads: Threads to use.
+    """
+    if batch.values is None:
+        return
+    closed = _closed(closing, start, batch, batch.values, threads)
+    whole = replace(batch, given="configuration", values=closed.values, starts=None, first=None)
+    evaluate_in_lanes(writers, variants, plan, whole, arrays, reasons, threads)
+    if "closure.iterations" in arrays:
+        arrays["closure.iterations"][...] = closed.steps
+    lost = np.flatnonzero(~closed.closed)
+    if not len(lost):
+        return
+    for quantity in plan.quantities:
+        arrays[quantity.name][lost] = quantity.fill
+    arrays["status"][lost] = NO_CLOSURE
+    gaps = closed.residual[lost]
+    # Not certain either where the gap is not a number.
+    certain = (gaps > OPEN * closing.mechanism.length) & ~closed.jumped[lost]
+    for lane in lost[certain][:MOST_REASONS].tolist():
+        left = f"{closed.residual[lane]:.3g} m of its gaps stay open, angles times the characteristic length"
+        reasons.add(lane, Outcome(NO_CLOSURE, f"it does not close from the configuration before it: {left}"))
+    again = replace(batch, starts=closed.values)
+    evaluate_one_by_one(variants, plan, again, arrays, lost[~certain].tolist(), reasons)
+
+
+def _closed(
+    closing: LaneClosing, start: Configuration, batch: Batch, values: Matrix, threads: int
+) -> ClosedLanes:
+    if batch.starts is not None:
+        return closing.run_each(values, batch.starts, threads)
+    return closing.run(values, start, batch.stretch, threads)
