@@ -27,6 +27,8 @@ if TYPE_CHECKING:
         passive_force_ellipsoid,
     )
     from vincula.analysis.result import Analysis, analyze
+    from vincula.design.motor_choice import MotorChoice
+    from vincula.design.placement import Placement, place
     from vincula.errors import (
         ClosureError,
         DuplicateNameError,
@@ -117,9 +119,11 @@ __all__ = [
     "MixedUnitsError",
     "MixedUnitsWarning",
     "ModelError",
+    "MotorChoice",
     "NonFiniteError",
     "Path",
     "PathEvent",
+    "Placement",
     "PlanarJoint",
     "PointTable",
     "Polyline",
@@ -161,6 +165,7 @@ __all__ = [
     "merge_shards",
     "open_sweep",
     "passive_force_ellipsoid",
+    "place",
     "plot_comparison",
     "plot_map",
     "plot_mechanism",
@@ -188,6 +193,9 @@ _HOME = {
     "passive_force_ellipsoid": "vincula.analysis.manipulability:passive_force_ellipsoid",
     "Analysis": "vincula.analysis.result:Analysis",
     "analyze": "vincula.analysis.result:analyze",
+    "MotorChoice": "vincula.design.motor_choice:MotorChoice",
+    "Placement": "vincula.design.placement:Placement",
+    "place": "vincula.design.placement:place",
     "ClosureError": "vincula.errors:ClosureError",
     "DuplicateNameError": "vincula.errors:DuplicateNameError",
     "FileError": "vincula.errors:FileError",

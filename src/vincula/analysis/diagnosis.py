@@ -33,7 +33,7 @@ def verdicts(model: LinearModel) -> list[str]:
     if counts.redundancy:
         said += _redundant_motors(model)
     if counts.indeterminacy:
-        said += _indeterminate(model)
+        said += indeterminate_motions(model)
     said.append(_driven(model))
     if counts.structural_wrenches:
         said.append(_structural(model))
@@ -121,8 +121,8 @@ def _redundant_motors(model: LinearModel) -> list[str]:
     return said
 
 
-def _indeterminate(model: LinearModel) -> list[str]:
-    """Motions of the member with all motors locked."""
+def indeterminate_motions(model: LinearModel) -> list[str]:
+    """Motions of the member with all motors locked: one sentence each, with the joints that take part."""
     n_p = len(model.passives)
     if not np.any(model.grasp):
         return [f"Nothing holds {model.reference!r}: it moves freely in all {model.dimension} directions."]

@@ -64,32 +64,44 @@ def ranked_designs(
     return tuple(sorted((_judged(one, criterion, on) for one in analyses), key=_place))
 
 
-def _place(design: RankedDesign) -> tuple[int, float]:
-    if design.analysis.ledger.summary.indeterminacy:
-        return 2, -(design.index or 0.0)
-    return (1, 0.0) if design.index is None else (0, -design.index)
+def place_in_ranking(index: float | None, indeterminacy: int) -> tuple[int, float]:
+    """Sorting key of a design: smaller is better; the one order in which designs are ranked.
+
+    Args:
+        index: What it is ranked by, more being better; None where it has no such number.
+        indeterminacy: Ways in which the member moves with all motors locked.
+    """
+    if indeterminacy:
+        return 2, -(index or 0.0)
+    return (1, 0.0) if index is None else (0, -index)
 
 
-def _judged(analysis: Analysis, criterion: str, on: Part) -> RankedDesign:
-    index = _index(analysis, criterion, on)
-    if math.isnan(index):
-        return RankedDesign(analysis, None, _reason(analysis) or f"it has no {CRITERIA[criterion]}")
-    return RankedDesign(analysis, index, _reason(analysis))
+def indeterminate_words(count: int) -> str:
+    """Why a design stands behind all others; empty for one that holds the member.
 
-
-def _reason(analysis: Analysis) -> str:
-    count = analysis.ledger.summary.indeterminacy
+    Args:
+        count: Ways in which the member moves with all motors locked.
+    """
     if not count:
         return ""
     ways = "1 way" if count == 1 else f"{count} ways"
     return f"the member is indeterminate: it moves in {ways} with all motors locked"
 
 
-def _index(analysis: Analysis, criterion: str, on: Part) -> float:
-    """The number of a design; NaN where it has none."""
-    ellipsoids: dict[str, Ellipsoid] = {one.kind.replace(" ", "-"): one for one in analysis.ellipsoids}
-    if criterion in ellipsoids:
-        return min((float(value) for value in ellipsoids[criterion].finite), default=math.nan)
+def criterion_value(analysis: Analysis, criterion: str, on: Part = "all") -> float:
+    """The number that a design is ranked by; NaN where it has none.
+
+    Args:
+        analysis: The design.
+        criterion: One of `CRITERIA`.
+        on: For the indices: translation, rotation or all components.
+
+    Raises:
+        MixedUnitsError: An index over metres and radians with weights that nobody chose.
+    """
+    if criterion == "kinematic" or criterion.endswith("-force"):
+        ellipsoid: Ellipsoid = getattr(analysis, criterion.replace("-", "_"))
+        return min((float(value) for value in ellipsoid.finite), default=math.nan)
     function = {
         "yoshikawa": indices.yoshikawa_volume,
         "inverse-condition": indices.inverse_condition_number,
@@ -97,3 +109,15 @@ def _index(analysis: Analysis, criterion: str, on: Part) -> float:
         "smallest-singular-value": indices.smallest_singular_value,
     }[criterion]
     return function(analysis.kinematic, on)
+
+
+def _place(design: RankedDesign) -> tuple[int, float]:
+    return place_in_ranking(design.index, design.analysis.ledger.summary.indeterminacy)
+
+
+def _judged(analysis: Analysis, criterion: str, on: Part) -> RankedDesign:
+    index = criterion_value(analysis, criterion, on)
+    reason = indeterminate_words(analysis.ledger.summary.indeterminacy)
+    if math.isnan(index):
+        return RankedDesign(analysis, None, reason or f"it has no {CRITERIA[criterion]}")
+    return RankedDesign(analysis, index, reason)

@@ -1,0 +1,1 @@
+"""Design: which joints get the motors."""
