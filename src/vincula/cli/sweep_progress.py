@@ -59,7 +59,8 @@ class ProgressOnStderr:
         now = time.monotonic()
         fresh = progress.stage != self._stage
         if fresh:
-            self._stage, self._began = progress.stage, now
+            self._stage = progress.stage
+            self._began = self._began if progress.stage == "done" else now
         words = self._sentence(progress, now - self._began)
         if self._bar is None:
             if (fresh and progress.stage in ("computing", "done")) or now - self._told > SECONDS:
@@ -76,10 +77,11 @@ class ProgressOnStderr:
         share = 100.0 * progress.done / progress.total if progress.total else 100.0
         parts = [f"{progress.done} of {progress.total} ({share:.3g} %)"]
         fresh = progress.done - progress.before
-        if fresh > 0 and seconds > 0.0 and progress.stage in ("computing", "starts"):
+        if fresh > 0 and seconds > 0.0 and progress.stage != "checking":
             rate = fresh / seconds
             parts.append(f"{rate:.4g} a second")
-            parts.append(f"{_duration((progress.total - progress.done) / rate)} left")
+            if progress.done < progress.total:
+                parts.append(f"{_duration((progress.total - progress.done) / rate)} left")
         if progress.failed:
             parts.append(f"{progress.failed} chunks failed")
         if progress.stopping:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from inspect import Parameter, Signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from vincula.errors import FileError, SweepError, VinculaError
 from vincula.files.load import EXAMPLE
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from vincula.files.sweep_file import SweepFile
     from vincula.mechanism.mechanism import Mechanism
     from vincula.sweep.sweep import Sweep
+
+
+_OPTION: Final = re.compile(r"--([a-z]+):? ")
+"""How messages about the common options begin; the keys of a sweep file have their names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,4 +167,7 @@ def _placed(file: SweepFile, key: str, action: Any) -> Any:
     except FileError:
         raise
     except VinculaError as error:
-        file.refuse((key,), error)
+        option = _OPTION.match(str(error))
+        if option is None:
+            file.refuse((key,), error)
+        file.refuse((option[1],), VinculaError(str(error)[option.end() :]))

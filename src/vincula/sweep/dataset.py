@@ -177,7 +177,8 @@ def _xarray() -> Any:
 
 
 def _labelled(found: xarray.Dataset) -> xarray.Dataset:
-    """With the names of motors, components and counts along their dimensions."""
+    """In the order of the sweep, with the names of motors, components and counts along their dimensions."""
+    found = found[[name for name in found.attrs.get("arrays", list(found.data_vars)) if name in found]]
     labels: dict[str, list[str]] = {}
     for array in found.data_vars.values():
         labels |= {str(dim): names for dim, names in array.attrs.get("labels", {}).items()}

@@ -89,18 +89,18 @@ def tables(data: xarray.Dataset) -> Iterator[dict[str, np.ndarray[Any, Any]]]:
 def _columns(data: xarray.Dataset) -> list[tuple[str, tuple[str, tuple[int, ...] | None]]]:
     dims = data["status"].dims
     found: list[tuple[str, tuple[str, tuple[int, ...] | None]]] = []
-    for name, coordinate in data.coords.items():
-        if set(coordinate.dims) <= set(dims):
-            found.append((str(name), (str(name), None)))
+    own = [str(name) for name, array in data.coords.items() if set(array.dims) <= set(dims)]
+    for name in data.attrs.get("variables", own):
+        found.append((name, (name, None)))  # noqa: PERF401
     found.append(("status", ("status", ())))
     for name, array in data.data_vars.items():
         if name == "status":
             continue
-        own = [str(dim) for dim in array.dims if dim not in dims]
-        for place in np.ndindex(*(array.sizes[dim] for dim in own)):
+        inner = [str(dim) for dim in array.dims if dim not in dims]
+        for place in np.ndindex(*(array.sizes[dim] for dim in inner)):
             labels = [
                 str(data[dim].values[k]) if dim in data.coords else str(k)
-                for dim, k in zip(own, place, strict=True)
+                for dim, k in zip(inner, place, strict=True)
             ]
             told = f"{name}[{','.join(labels)}]" if labels else str(name)
             found.append((told, (str(name), place)))

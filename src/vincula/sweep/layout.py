@@ -178,7 +178,8 @@ def layout_of(
                 Field(names[variable.name], variable.name, (), (), "<f8", float("nan"), about, column=k)
             )
     dims = tuple(names.get(dim, dim) for dim in points.dims)
-    about_all = {"coordinates": " ".join(names.values()), **attributes}
+    order = {"variables": list(names.values()), "arrays": [field.name for field in results]}
+    about_all = {"coordinates": " ".join(names.values()), **attributes, **order}
     return Layout(points, dims, chunking, (*results, *columns), axes, about_all)
 
 
