@@ -155,6 +155,9 @@ def _end(sheet: Sheet, one: Node, two: Node) -> Crossing | Configuration:
     stop = path.stopped
     share = min(stop.parameter / path.length, 1.0) if path.length else 0.0
     kind = _kind(stop.singularities, plane.of_member) if stop.kind == "singularity" else stop.kind
+    if kind == "incompatible" and share == 0.0:
+        # The point itself lies on the edge, to rounding: what is held can move along it only.
+        kind = KINDS[1] if plane.of_member else KINDS[0]
     return Crossing(here + share * (there - here), kind, stop.configuration, stop.reason)
 
 

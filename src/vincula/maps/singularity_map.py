@@ -192,7 +192,8 @@ def _finished(
         values[node] = sheet.configuration(point).flat
     indices = {name: np.full(shape, np.nan) for name in asked}
     status = np.full(shape, NO_CLOSURE, dtype=np.uint8)
-    result = compiled.evaluate(values[reached], asked)
+    # Closing took far longer than this will; kernels would first have to be loaded.
+    result = compiled.evaluate(values[reached], asked, path="reference")
     status[reached] = result.status
     for name in asked:
         indices[name][reached] = result[name]
