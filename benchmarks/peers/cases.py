@@ -179,9 +179,9 @@ def path_poses(count: int, reach: float = 0.2) -> Array:
 
 
 def path_motors(count: int) -> Array:
-    """Motor angles of the five-bar along one smooth path of +-0.3 rad [rad]."""
+    """Motor angles of the five-bar along one smooth path of +-0.2 rad, within its reach [rad]."""
     angle = 2.0 * math.pi * np.arange(count)[:, None] / 1000.0
-    return np.asarray(0.3 * np.sin(angle * np.array([1.0, 0.79])))
+    return np.asarray([-0.2, -0.1] + 0.2 * np.sin(angle * np.array([1.0, 0.79])))
 
 
 def _poses(offset: Array) -> Array:
