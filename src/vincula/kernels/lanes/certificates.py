@@ -1,9 +1,9 @@
 """Whether the ranks of the plan hold at a configuration, in lanes.
 
 Lower bounds of smallest singular values come from inverses of triangles: the smallest singular value of
-[R B; 0 C] is at least 1 / sqrt(r^2 (1 + |B|^2 c^2) + c^2) with r and c the norms of the inverses of R
-and C.  A rank is certain when its bound is twice as far above the uncertainty as the ordinary rule asks,
-and everything that should be zero is below half of what that rule takes for certainly zero; so what is
+[R B; 0 C] is at least 1 / sqrt(r^2 + (1 + |R^-1 B|^2) c^2) with r and c the norms of the inverses of R
+and C.  A rank is certain when its bound is farther above the uncertainty than the ordinary rule asks, and
+everything that should be zero is below half of what that rule takes for certainly zero; so what is
 certain here is certain there, with the same ranks.
 """
 
@@ -26,8 +26,10 @@ from vincula.kernels.lanes.vector import (
     store,
 )
 
-ASKED = 20.0
-"""How many times above the uncertainty a bound must be: twice the safety of `numerics.rank`."""
+ASKED = 12.0
+"""How many times above the uncertainty a bound must be: a little more than the safety of `numerics.rank`.
+
+The uncertainty is itself taken with the Frobenius norm for the largest singular value."""
 
 
 @kernel
@@ -102,9 +104,9 @@ def _free_motors(w: Slots, code: Code, base: int, entry: int, stack: int, stride
 
 
 @kernel
-def _joined(first: Lane, second: Lane, norm: Lane, z: Lane) -> Lane:
-    """Squared inverse of a block triangle from those of its two blocks."""
-    return fma(first, fma(norm, second, splat(1.0, z)), second)
+def _joined(first: Lane, second: Lane, coupling: Lane, z: Lane) -> Lane:
+    """Squared inverse of a block triangle from those of its two blocks and the square of R^-1 B."""
+    return fma(splat(1.0, z) + coupling, second, first)
 
 
 @kernel
@@ -116,9 +118,14 @@ def certain_ranks(w: Slots, code: Code, constants: Slots, base: int, z: Lane) ->
     notes = base + code[t.NOTES]
     norm = load(w, notes + t.NORM, z)
     passive = load(w, notes + t.PASSIVE_INVERSE, z)
-    driven = _joined(passive, load(w, notes + t.DRIVEN_INVERSE, z), norm, z)
-    locked = _joined(passive, load(w, notes + t.OBJECT_INVERSE, z), norm, z)
-    whole = _joined(driven, load(w, notes + t.REST_INVERSE, z), norm, z)
+    of_motors, of_twist = load(w, notes + t.MOTOR_COUPLING, z), load(w, notes + t.OBJECT_COUPLING, z)
+    of_rows = load(w, notes + t.DRIVEN_INVERSE, z)
+    driven = _joined(passive, of_rows, of_motors, z)
+    locked = _joined(passive, load(w, notes + t.OBJECT_INVERSE, z), of_twist, z)
+    # R^-1 B for passive joints and motors together, B the twist: through the motors it goes by their rows.
+    reduced = of_rows * load(w, notes + t.OBJECT_NORM, z)
+    both_ways = sqrt(of_twist) + sqrt(of_motors * reduced)
+    whole = _joined(driven, load(w, notes + t.REST_INVERSE, z), fma(both_ways, both_ways, reduced), z)
     together = passive + driven + locked + whole
     # What is infinite or not a number must not be lost in a comparison.
     worst = larger(larger(passive, driven), larger(locked, whole)) + (together - together)

@@ -22,9 +22,8 @@ def eliminate(w: Slots, code: Code, constants: Slots, base: int, z: Lane) -> Non
         z: Zero.
     """
     notes = base + code[t.NOTES]
-    for k in range(t.RESIDUAL):
+    for k in range(t.NOTE_COUNT):
         store(w, notes + k, z)
-    store(w, notes + t.LIMB_INVERSE, z)
     for front in range(code[t.FRONTS]):
         entry = code[t.FRONT] + t.FRONT_ENTRY * front
         _gather(w, code, constants, base, entry, z)
@@ -44,7 +43,7 @@ def _gather(w: Slots, code: Code, constants: Slots, base: int, entry: int, z: La
         if member == 1:
             member_entries(w, code, base, block, matrix + joints * m + row, m, z)
         row += code[code[t.BLOCK] + t.BLOCK_ENTRY * block + 1]
-    _note_norm(w, matrix, m, row, joints + member * code[t.TWIST], base + code[t.NOTES], z)
+    _note_norms(w, code, matrix, entry, row, base + code[t.NOTES], z)
     columns = joints + member * code[t.TWIST]
     at = code[entry + 11]
     for _ in range(code[entry + 12]):
@@ -61,14 +60,24 @@ def _gather(w: Slots, code: Code, constants: Slots, base: int, entry: int, z: La
 
 
 @kernel
-def _note_norm(w: Slots, matrix: int, m: int, rows: int, columns: int, notes: int, z: Lane) -> None:
-    """Add the squares of the rows of blocks to the squared norm of A."""
-    total = load(w, notes + t.NORM, z)
-    for j in range(columns):
+def _note_norms(w: Slots, code: Code, matrix: int, entry: int, rows: int, notes: int, z: Lane) -> None:
+    """Add the squares of the rows of blocks to the squared norms of A and of G."""
+    m, joints = code[entry], code[entry + 1] + code[entry + 3]
+    own = _norm(w, matrix, m, rows, 0, joints, z)
+    of_object = _norm(w, matrix, m, rows, joints, joints + code[entry + 6] * code[t.TWIST], z)
+    store(w, notes + t.NORM, load(w, notes + t.NORM, z) + own + of_object)
+    store(w, notes + t.OBJECT_NORM, load(w, notes + t.OBJECT_NORM, z) + of_object)
+
+
+@kernel
+def _norm(w: Slots, matrix: int, m: int, rows: int, first: int, last: int, z: Lane) -> Lane:
+    """Squared norm of the upper rows of columns first ... last - 1."""
+    total = z
+    for j in range(first, last):
         for r in range(rows):
             x = load(w, matrix + j * m + r, z)
             total = fma(x, x, total)
-    store(w, notes + t.NORM, total)
+    return total
 
 
 @kernel
@@ -81,12 +90,19 @@ def _hand_on(w: Slots, code: Code, base: int, entry: int, z: Lane) -> None:
     notes, out = base + code[t.NOTES], base + code[entry + 7]
     by_left = code[entry + 5] == t.BY_LEFT
     reach = rank if by_left else pivots + behind
+    joints = pivots + others
+    of_motors = _norm(w, matrix, m, m, pivots, joints, z)
+    of_twist = _norm(w, matrix, m, m, joints, pivots + behind, z)
     triangularise(w, matrix, m, code, order, steps, reach, factors, z)
     if code[entry + 16] >= 0:
         keep_inverse(w, code, base, entry, z)
-    else:
+    elif pivots > 0:
         square = inverse_square(w, matrix, m, code, order, rank, factors, vector, z)
         store(w, notes + t.PASSIVE_INVERSE, larger(load(w, notes + t.PASSIVE_INVERSE, z), square))
+        coupled = larger(load(w, notes + t.MOTOR_COUPLING, z), square * of_motors)
+        store(w, notes + t.MOTOR_COUPLING, coupled)
+        coupled = fma(square, of_twist, load(w, notes + t.OBJECT_COUPLING, z))
+        store(w, notes + t.OBJECT_COUPLING, coupled)
     if by_left:
         _by_left(w, code, entry, matrix, factors, vector, notes, out, z)
     else:

@@ -117,7 +117,7 @@ class _Writer:
                 self.listed(front.blocks), len(front.blocks), self.listed(front.columns),
                 self.listed([n for c in front.children for n in self._child(fronts, c, front)]),
                 len(front.children), self.listed(front.order), front.reflections, front.limb,
-                *(self._chain(fronts, k) if k in chained else (-1, 0, 0, -1)),
+                *(self._chain(fronts, k) if k in chained else (-1, 0, 0, -1, 0, 0)),
             ]  # fmt: skip
         self.code[t.FRONTS], self.code[t.FRONT] = len(fronts), self.listed(entries)
 
@@ -141,12 +141,18 @@ class _Writer:
         front, motors = fronts[index], self.structure.motors
         after = [k for k, other in enumerate(fronts) if index in other.children]
         rest = [c for c in front.columns[front.pivots :] if c >= motors]
-        size = front.rank + len(rest)
-        place = self.slot(front.rank * size + size * size)
+        own = [c for c in self.structure.limbs[front.limb][1] if c < motors]
+        where = {column: k for k, column in enumerate(front.columns)}
+        positions = [where.get(column, -1) for column in own]
+        first = len(front.columns)
+        positions += [first + k if front.member else -1 for k in range(self.twist)]
+        size, width = front.rank + len(rest), len(positions)
+        place = self.slot(front.rank * (size + width) + size * size + size * width)
         numbers: list[int] = []
         for column in rest:
             numbers += [front.columns.index(column), _index_in(fronts[after[0]], column, motors)]
-        return [place, len(rest), self.listed(numbers), after[0] if after else -1]
+        behind = after[0] if after else -1
+        return [place, len(rest), self.listed(numbers), behind, width, self.listed(positions)]
 
     def limbs(self, fronts: list[Front], relation: RelationPlan) -> None:
         """Entries of all limbs, in the order in which they enter the relation."""

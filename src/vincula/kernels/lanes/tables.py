@@ -213,17 +213,24 @@ RESIDUAL: Final = 6
 """Squared largest gap."""
 LIMB_INVERSE: Final = 7
 """Squared norm of the inverse so far in the limb at hand."""
-LIMB_NORM: Final = 8
-"""Squared norm of the rows of the limb at hand."""
+OBJECT_NORM: Final = 8
+"""Squared norm of G."""
 REACHED: Final = 9
 """Squared distance of the farthest joint from the reference point."""
-NOTE_COUNT: Final = 10
+MOTOR_COUPLING: Final = 10
+"""Largest squared norm, over limbs, of R^-1 B for the motors' columns B."""
+OBJECT_COUPLING: Final = 11
+"""Sum over limbs of the same on the twist."""
+LIMB_COUPLING: Final = 12
+"""That on the motors so far in the limb at hand."""
+NOTE_COUNT: Final = 13
 
 # A front: rows, pivots, their rank, other columns, rows handed on, mode, member, slot of what is handed on
 # (row after row), blocks (place, number), columns (place), children (place, number), order (place),
 # reflections, limb; then of limbs with several fronts: slot of inverses (-1 in the others), passive columns
-# among the others (number, place: position here, index in the next front or -1), next front (-1 for the last)
-FRONT_ENTRY: Final = 20
+# among the others (number, place: position here, index in the next front or -1), next front (-1 for the
+# last), motors and twist components (number of both, place of their positions here or -1)
+FRONT_ENTRY: Final = 22
 BY_LEFT: Final = 0
 """Rows handed on are products with left null vectors."""
 BY_REFLECTION: Final = 1
