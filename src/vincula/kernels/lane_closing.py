@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vincula.arrays import Matrix
+from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, VinculaError
 from vincula.kernels.evaluation import NO_CLOSURE
 from vincula.kernels.inputs import Batch, Given
@@ -110,3 +110,37 @@ def _closed(
     if batch.starts is not None:
         return closing.run_each(values, batch.starts, threads)
     return closing.run(values, start, batch.stretch, threads)
+
+
+class SingleClosing:
+    """One closing from home at a time: a call costs little more than its kernel.
+
+    It keeps nothing between calls, so several threads may use it.
+
+    Args:
+        closing: The closing in lanes; home must be closed.
+    """
+
+    def __init__(self, closing: LaneClosing) -> None:
+        from vincula.kernels.lanes.closing_entries import closing_entry
+
+        self._arrays, self._run = closing.arrays, closing_entry(1)
+        self._start = np.array(closing.mechanism.home.flat, ndmin=2)
+        self._given = np.array(closing.at_home, ndmin=2)
+        self._first, self._count = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
+
+    def closed(self, inputs: Vector) -> tuple[Vector, int] | None:
+        """The closed configuration and the Jacobians evaluated; None where lanes do not close it.
+
+        Args:
+            inputs: Motor values, or one pose.
+        """
+        if inputs.shape != self._given.shape[1:]:
+            return None
+        values = np.empty_like(self._start)
+        steps, gaps, closed = np.zeros(1, dtype=np.int32), np.zeros(1), np.zeros(1, dtype=np.uint8)
+        a = self._arrays
+        self._run(self._start, self._given, self._first, self._count, np.array(inputs, np.float64, ndmin=2),
+                  a.code, a.plan, a.constants, a.value_scale, a.input_scale, 0, 1, values, steps, gaps,
+                  closed)  # fmt: skip
+        return (values[0], int(steps[0])) if closed[0] == 1 else None
