@@ -30,7 +30,7 @@ from vincula.files.xmltree import parse_xml
 
 FILES = ROOT / "tests" / "files"
 SHARED = Path(os.environ.get("VINCULA_SHARED", ROOT.parent / "shared"))
-LARGEST = 40_000
+LARGEST = int(os.environ.get("VINCULA_FUZZ_LARGEST", "40000"))
 
 
 @dataclass(frozen=True)
