@@ -14,7 +14,7 @@ COMPARED = (
     "counts",
     "summary",
     "bounds",
-    *(f"{kind}.{part}" for kind in KINDS for part in ("efficiencies", "classes")),
+    *(f"{kind}.{part}" for kind in KINDS if kind != "internal_force" for part in ("efficiencies", "classes")),
     *(f"kinematic.{part}" for part in ("task_directions", "motor_directions")),
     *(f"dual_force.{part}" for part in ("task_directions", "motor_directions")),
 )

@@ -25,11 +25,13 @@ COMMANDS: Final = {
     "close": "close",
     "follow": "follow",
     "map": "map",
+    "place": "place",
     "sweep": "sweep",
     "plot": "plot",
     "convert": "convert",
     "examples": "examples",
     "schema": "examples",
+    "warm-up": "warming",
 }
 """Module of every command, in the order in which people meet them."""
 
@@ -46,7 +48,7 @@ class CommandLine(click.Group):
         if cmd_name not in COMMANDS:
             return None
         module = import_module(f"vincula.cli.{COMMANDS[cmd_name]}")
-        command: click.Command = getattr(module, f"{cmd_name}_command")
+        command: click.Command = getattr(module, f"{cmd_name.replace('-', '_')}_command")
         return command
 
     def resolve_command(

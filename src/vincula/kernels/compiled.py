@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -13,18 +12,9 @@ from vincula.arrays import Vector
 from vincula.errors import ModelError, ShapeError, listing
 from vincula.kernels.evaluation import Evaluation
 from vincula.kernels.inputs import Given, batch_of
-from vincula.kernels.lane_batch import evaluate_in_lanes
-from vincula.kernels.lane_path import (
-    LanePath,
-    LaneWriters,
-    cores,
-    empty_arrays,
-    lane_path,
-    refuse_without_numba,
-)
-from vincula.kernels.one_by_one import evaluate_one_by_one, reasons_for
 from vincula.kernels.plans import Plan, plan_for, refuse_bad_weights
 from vincula.kernels.quantities import Quantity, available, coordinates
+from vincula.kernels.runner import Runner
 from vincula.kernels.variants import Builder, Variants
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
@@ -58,9 +48,7 @@ class CompiledMechanism:
         self._quantities = available(mechanism)
         self.variants = Variants(mechanism, build)
         self._plans: dict[tuple[str, ...], Plan] = {}
-        self._paths: dict[bool, LanePath | str] = {}
-        self._writers: dict[tuple[Plan, bool], LaneWriters | str] = {}
-        self._preparing = Lock()
+        self._runner = Runner(mechanism, weights, self.variants)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self.mechanism, self.weights, self.build)
@@ -138,22 +126,18 @@ class CompiledMechanism:
         """
         _refuse_unknown(path, threads)
         plan = self._plan(quantities)
+        if type(configurations) is np.ndarray and configurations.ndim == 1 and path != "reference":
+            quick = None
+            if start is None and not parameters and given == "configuration":
+                quick = self._runner.single(plan, configurations)
+            elif start is None and not parameters:
+                quick = self._runner.single_closed(plan, given, configurations)
+            if quick is not None:
+                return quick
         settings = parameters or {}
         self.variants.names_checked(settings)
         batch = batch_of(self.mechanism, given, configurations, start, settings)
-        lanes = (
-            "the reference path was asked for" if path == "reference" else self._lanes(plan, bool(settings))
-        )
-        if isinstance(lanes, str) and path == "lanes":
-            refuse_without_numba()
-            raise ModelError(f"path='lanes': {lanes}")
-        reasons = reasons_for(self.variants, plan, batch)
-        if isinstance(lanes, str) or batch.given != "configuration":
-            arrays = {quantity.name: quantity.empty(batch.lanes) for quantity in plan.quantities}
-            evaluate_one_by_one(self.variants, plan, batch, arrays, range(batch.lanes), reasons)
-        else:
-            arrays = empty_arrays(plan.quantities, batch.lanes)
-            evaluate_in_lanes(lanes, self.variants, plan, batch, arrays, reasons, threads or cores())
+        arrays, reasons = self._runner.run(plan, batch, path, threads)
         shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in arrays.items()}
         return Evaluation(batch.shape, plan.by_name, shaped, reasons)
 
@@ -206,17 +190,6 @@ class CompiledMechanism:
         from vincula.kernels.gradients import gradient
 
         return gradient(self, configurations, quantity, wrt=wrt, parameters=parameters)
-
-    def _lanes(self, plan: Plan, general: bool) -> LaneWriters | str:
-        """A plan in lanes, or why the reference path must do it; made once."""
-        key = plan, general
-        if key not in self._writers:
-            with self._preparing:
-                if general not in self._paths:
-                    self._paths[general] = lane_path(self.mechanism, self.weights, general=general)
-                path = self._paths[general]
-                self._writers[key] = path if isinstance(path, str) else path.writers(plan.quantities)
-        return self._writers[key]
 
     def _plan(self, quantities: Iterable[str]) -> Plan:
         if isinstance(quantities, str):

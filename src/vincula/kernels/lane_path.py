@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from vincula.analysis.recipes import resolved_weights, task_quantity
+from vincula.analysis.ellipsoid import Kind
+from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quantity
 from vincula.arrays import Matrix
 from vincula.errors import MissingExtraError, VinculaError
 from vincula.kernels.lane_quantities import Listing, Writer, writer_of
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
 BLOCK: Final = 1024
 """Lanes computed and written at a time: what comes out of the kernel stays in the cache."""
 
+SMALL_GAP: Final = 1e-5
+"""Gaps up to this, in units of the characteristic length, are the same in lanes to about 1e-10."""
+
 
 @dataclass(frozen=True, eq=False)
 class LanePath:
@@ -53,6 +57,19 @@ class LanePath:
     given_weights: Weights | None
     mechanism: Mechanism
 
+    def _listing(self, kind: Kind) -> Listing | str:
+        """What an ellipsoid lists in lanes that are certain, or why lanes do not give it."""
+        if kind == "internal force":
+            return "internal forces are not computed in lanes"
+        if kind != "kinematic" and not self.weights.dual:
+            return "lanes give forces under reciprocal weights only"
+        model = model_without_numbers(self.mechanism)
+        sides = task_quantity(kind), motor_quantity(kind)
+        diagonals = [self.weights.metric(side, model).diagonal for side in sides]
+        if diagonals[0] is None or diagonals[1] is None:
+            return "weights are not diagonal"
+        return Listing.of(kind, self.program.counts, np.sqrt(diagonals[0]), np.sqrt(diagonals[1]))
+
     def same_weights(self, variant: Mechanism) -> bool:
         """Whether a variant is weighed like the mechanism; lanes share their weights."""
         if self.given_weights is not None:
@@ -64,24 +81,15 @@ class LanePath:
 
     def writers(self, quantities: Iterable[Quantity]) -> LaneWriters | str:
         """How the quantities are written; or why only the reference path gives them."""
-        model = model_without_numbers(self.mechanism)
-        counts = self.program.counts
         found: list[tuple[str, Writer]] = []
         want = 0
         for quantity in quantities:
-            listing = None
-            if quantity.kind is not None:
-                if quantity.kind == "internal force" or not (
-                    quantity.kind == "kinematic" or self.weights.dual
-                ):
-                    return f"{quantity.name} is not computed in lanes with these weights"
-                diagonal = self.weights.metric(task_quantity(quantity.kind), model).diagonal
-                if diagonal is None:
-                    return f"{quantity.name}: weights that are not diagonal"
-                listing = Listing.of(quantity.kind, counts, np.sqrt(diagonal), self.mechanism.length)
             if quantity.name in ("configuration", "closure.residual", "reference.pose"):
                 continue
-            how = writer_of(quantity, counts, listing)
+            listing = None if quantity.kind is None else self._listing(quantity.kind)
+            if isinstance(listing, str):
+                return f"{quantity.name}: {listing}"
+            how = writer_of(quantity, self.program.counts, self.program.twelve, listing)
             if isinstance(how, str):
                 return how
             found.append((quantity.name, how[0]))
@@ -120,6 +128,8 @@ class LaneWriters:
         count = len(values)
         unknown = np.empty(count, dtype=bool)
         opened = np.empty(count, dtype=bool)
+        # Lanes measure small gaps: for angles they take the sine.  A large one is measured one by one.
+        widest = SMALL_GAP if "closure.residual" in arrays else np.inf
 
         def block(first: int) -> None:
             part = slice(first, min(first + BLOCK, count))
@@ -127,7 +137,7 @@ class LaneWriters:
                 values[part], None if constants is None else constants[part], want=self.want, threads=1
             )
             self._write(raw, arrays, part)
-            opened[part] = ~raw.certain & (raw.residual > 2.0 * CLOSED)
+            opened[part] = ~raw.certain & (raw.residual > 2.0 * CLOSED) & (raw.residual < widest)
             unknown[part] = ~(raw.certain | opened[part])
 
         starts = range(0, count, BLOCK)

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from vincula.analysis.ellipsoid import Kind
 from vincula.arrays import Vector
 from vincula.kernels.quantities import CLASS_CODES, INDICES, NO_CLASS, SUMMARY, Quantity
-from vincula.numerics.counts import SummaryCounts
+from vincula.numerics.counts import SummaryCounts, TwelveCounts
+from vincula.numerics.subspaces import settled
 
 if TYPE_CHECKING:
     from vincula.kernels.lanes.program import RawLanes
@@ -28,6 +29,10 @@ MOTIONS: Final = 1
 """Directions of the kinematic ellipsoid are needed."""
 EFFORTS: Final = 2
 """Directions of the force ellipsoids are needed."""
+REST: Final = 4
+"""Directions of infinite and zero kinematic efficiencies are needed."""
+COUNTS: Final = 8
+"""All twelve counts must be certain."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +45,7 @@ class Listing:
         finite: Number of finite ones.
         zero: Number of zeros, which come last.
         roots: Roots of the weights of the task components.
-        length: Characteristic length [m].
+        motor_roots: Roots of the weights of the motors.
     """
 
     kind: Kind
@@ -48,14 +53,14 @@ class Listing:
     finite: int
     zero: int
     roots: Vector
-    length: float
+    motor_roots: Vector
 
     @staticmethod
-    def of(kind: Kind, counts: SummaryCounts, roots: Vector, length: float) -> Listing:
+    def of(kind: Kind, counts: SummaryCounts, roots: Vector, motor_roots: Vector) -> Listing:
         """The listing of one ellipsoid (house page) by the summary counts."""
         infinite = {"kinematic": counts.indeterminacy, "passive force": counts.structural_wrenches}
         zero = {"kinematic": counts.redundancy, "active force": counts.internal_torques}
-        return Listing(kind, infinite.get(kind, 0), counts.coordinated, zero.get(kind, 0), roots, length)
+        return Listing(kind, infinite.get(kind, 0), counts.coordinated, zero.get(kind, 0), roots, motor_roots)
 
     @property
     def last(self) -> int:
@@ -81,14 +86,19 @@ class Listing:
         return np.empty(0) if found is None else found
 
 
-def writer_of(quantity: Quantity, counts: SummaryCounts, listing: Listing | None) -> tuple[Writer, int] | str:
-    """How lanes write a quantity and which directions that needs; or why only the reference path does.
+def writer_of(
+    quantity: Quantity, counts: SummaryCounts, twelve: TwelveCounts | None, listing: Listing | None
+) -> tuple[Writer, int] | str:
+    """How lanes write a quantity and what that needs; or why only the reference path does.
 
     Args:
         quantity: The quantity.
         counts: The summary counts of all lanes that are certain.
+        twelve: All twelve counts of lanes that are certain of them; None where none is.
         listing: What its ellipsoid lists; None where lanes do not know it.
     """
+    if quantity.name == "counts" and twelve is not None:
+        return _constant(list(twelve.as_dict().values())), COUNTS
     if quantity.kind is None:
         return _of_model(quantity, counts)
     if listing is None:
@@ -172,15 +182,35 @@ def _largest(listing: Listing) -> Writer:
 
 def _of_directions(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
     side = quantity.part
-    if listing.infinite if side == "task_directions" else listing.zero:
-        return f"{quantity.name}: lanes give the directions of finite efficiencies only"
+    rest = listing.infinite if side == "task_directions" else listing.zero
+    if rest and listing.kind != "kinematic":
+        return f"{quantity.name}: lanes give the directions of finite force efficiencies only"
+    # Infinite ones come before the finite ones and have no motor side, zeros behind them and no task side.
+    of_rest = slice(0, rest) if side == "task_directions" else slice(listing.last, listing.last + rest)
 
     def write(raw: RawLanes, out: Block) -> None:
         out[:, : listing.infinite] = np.nan
         out[:, listing.infinite : listing.last] = listing.directions(raw, side)
         out[:, listing.last :] = np.nan
+        if rest:
+            bases = raw.free if side == "task_directions" else raw.idle
+            roots = listing.roots if side == "task_directions" else listing.motor_roots
+            out[:, of_rest] = _rest_directions(raw, bases, roots)
 
-    return write, listing.want
+    return write, listing.want | (REST if rest else 0)
+
+
+def _rest_directions(raw: RawLanes, bases: NDArray[np.float64] | None, roots: Vector) -> NDArray[np.float64]:
+    """Settled directions of one subspace a lane, as the spectrum of one configuration gives them."""
+    found = np.array(bases, dtype=np.float64)
+    if found.shape[1] > 1:
+        for lane in np.flatnonzero(raw.certain):
+            found[lane] = settled(found[lane].T).T
+    found /= roots
+    size = np.abs(found)
+    first = (size >= size.max(axis=2, keepdims=True) * (1.0 - 1e-9)).argmax(axis=2)
+    signs = np.where(np.take_along_axis(found, first[:, :, None], axis=2) < 0.0, -1.0, 1.0)
+    return np.asarray(found * signs + 0.0)
 
 
 def _of_index(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:

@@ -89,16 +89,18 @@ def test_indices_are_those_of_the_analysis(five_bar: vc.CompiledMechanism) -> No
 
 def test_motors_are_followed_from_their_neighbours(five_bar: vc.CompiledMechanism) -> None:
     motors = np.linspace([0.0, 0.0], [-0.5, 0.3], 7)
-    found = five_bar.evaluate(
-        motors, ["configuration", "closure.residual", "closure.iterations"], given="motors"
-    )
-    assert (found.status == OK).all()
+    names = ("configuration", "closure.residual", "closure.iterations", "kinematic.efficiencies")
+    loop = five_bar.evaluate(motors, names, given="motors", path="reference")
+    assert (loop.status == OK).all()
     near = five_bar.mechanism.home
     for lane, (one, two) in enumerate(motors):
         near = five_bar.mechanism.close(near, motors={"o1": one, "o5": two}, attempts=1)
-        np.testing.assert_array_equal(found["configuration"][lane], near.flat)
-        assert found["closure.iterations"][lane] == near.iterations
+        np.testing.assert_array_equal(loop["configuration"][lane], near.flat)
+        assert loop["closure.iterations"][lane] == near.iterations
+    found = five_bar.evaluate(motors, names, given="motors")
     assert (found["closure.residual"] < 1e-12).all()
+    for name in ("configuration", "kinematic.efficiencies"):
+        np.testing.assert_allclose(found[name], loop[name], rtol=1e-10, atol=1e-12)
     backwards = five_bar.evaluate(motors[::-1], ["configuration"], given="motors", start=near)
     np.testing.assert_allclose(backwards["configuration"][::-1], found["configuration"], atol=1e-12)
 
@@ -109,7 +111,7 @@ def test_every_lane_has_its_own_start(five_bar: vc.CompiledMechanism) -> None:
     together = five_bar.evaluate(motors, ["configuration"], given="motors", start=home)["configuration"]
     for lane in range(4):
         alone = five_bar.evaluate(motors[lane], ["configuration"], given="motors")["configuration"]
-        np.testing.assert_array_equal(together[lane], alone)
+        np.testing.assert_allclose(together[lane], alone, atol=1e-12)
 
 
 def test_poses_of_the_member_give_themselves() -> None:
@@ -248,3 +250,34 @@ def test_threads_share_a_compiled_mechanism(five_bar: vc.CompiledMechanism) -> N
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(lambda _: fresh.evaluate(motors, given="motors"), range(8)):
             np.testing.assert_array_equal(found["kinematic.efficiencies"], want)
+
+
+def test_what_only_the_reference_path_does_is_said(five_bar: vc.CompiledMechanism) -> None:
+    pytest.importorskip("numba")
+    with pytest.raises(vc.ModelError, match="internal force"):
+        five_bar.evaluate(None, ["internal_force.efficiencies"], path="lanes")
+    assert five_bar.evaluate(None, ["internal_force.efficiencies"]).status == OK
+    assert five_bar.evaluate(np.zeros((0, 2)), given="motors", path="lanes").shape == (0,)
+
+
+def test_lanes_without_numba_name_the_extra(
+    five_bar: vc.CompiledMechanism, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("vincula.kernels.lane_path.numba_is_installed", lambda: False)
+    with pytest.raises(vc.MissingExtraError, match=r"vincula\[fast\]"):
+        five_bar.evaluate(None, path="lanes")
+    assert five_bar.evaluate(None).status == OK
+
+
+def test_open_loops_need_no_second_look() -> None:
+    """Lanes tell that a loop is open, and by how much, as one configuration alone does."""
+    compiled = vc.compile(vc.load("example:3rrr"))
+    rng = np.random.default_rng(3)
+    lanes = compiled.flat() + 10.0 ** -rng.uniform(0.5, 12.0, (40, 1)) * rng.standard_normal((40, 9))
+    names = ("closure.residual", "kinematic.efficiencies", "reference.pose")
+    fast, slow = (compiled.evaluate(lanes, names, path=path) for path in ("auto", "reference"))
+    np.testing.assert_array_equal(fast.status, slow.status)
+    assert 5 < (fast.status == OPEN).sum() < 35
+    np.testing.assert_allclose(fast["closure.residual"], slow["closure.residual"], rtol=1e-9, atol=1e-14)
+    lane = int(np.flatnonzero(fast.status == OPEN)[0])
+    assert fast.reason(lane) == slow.reason(lane)
