@@ -150,6 +150,21 @@ class SweepError(VinculaError):
         super().__init__(message)
 
 
+class DesignError(VinculaError):
+    """A search for a design that finds nothing, or cannot be kept or gone on with.
+
+    Attributes:
+        kind: `refused` (no feasible design, a log of another problem) or `storage` (the log cannot be used).
+        details: Further data, by name: how many designs each constraint killed.
+    """
+
+    def __init__(
+        self, message: str, *, kind: Literal["refused", "storage"] = "refused", **details: object
+    ) -> None:
+        self.kind, self.details = kind, details
+        super().__init__(message)
+
+
 class MissingExtraError(VinculaError, ImportError):
     """An optional dependency is not installed.
 

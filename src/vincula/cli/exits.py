@@ -6,6 +6,7 @@ from typing import Final
 
 from vincula.errors import (
     ClosureError,
+    DesignError,
     DuplicateNameError,
     MissingReferenceError,
     MixedUnitsError,
@@ -52,4 +53,6 @@ def exit_code(error: VinculaError) -> int:
         return USAGE
     if isinstance(error, SweepError):
         return {"usage": USAGE, "refused": REFUSED, "storage": STORAGE}[error.kind]
+    if isinstance(error, DesignError):
+        return {"refused": REFUSED, "storage": STORAGE}[error.kind]
     return REFUSED if isinstance(error, (ClosureError, ModelError)) else USAGE

@@ -1,4 +1,4 @@
-"""What a design must keep: bounds on measures, joint limits, lengths, clearances, no singularity inside.
+"""What a design must keep: bounds on measures, relations, joint limits, no singularity inside.
 
 A constraint gives every design the amount by which it is broken, 0 where it is kept; the amounts lead a
 search back to what is allowed, and their names are what infeasible designs are counted by.
@@ -15,15 +15,12 @@ import numpy as np
 
 from vincula.arrays import Vector
 from vincula.design.measures import Measure, SingularityDistance
-from vincula.errors import ModelError, UnknownNameError
-from vincula.mechanism.kinematics import part_frames
+from vincula.errors import ModelError
 from vincula.mechanism.residuals import axis_values
 
 if TYPE_CHECKING:
     from vincula.design.lanes import Lanes
     from vincula.kernels.compiled import CompiledMechanism
-    from vincula.mechanism.configuration import Configuration
-    from vincula.mechanism.mechanism import Mechanism
 
 LOST = 1.0
 """By how much a configuration that is singular, or has no number at all, breaks a constraint."""
@@ -54,7 +51,7 @@ class Constraint(ABC):
         """What it needs of a batch."""
         return ()
 
-    def check(self, compiled: CompiledMechanism) -> None:
+    def check(self, compiled: CompiledMechanism) -> None:  # noqa: B027
         """Refuse what this mechanism cannot be held to.
 
         Raises:
@@ -67,7 +64,7 @@ class Constraint(ABC):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Between(Constraint):
+class Between(Constraint):
     """A number between two bounds.
 
     Attributes:
@@ -84,7 +81,7 @@ class _Between(Constraint):
         if self.least is not None and self.most is not None and self.least > self.most:
             raise ModelError(f"constraint {self.name!r}: least {self.least:g} is above most {self.most:g}")
 
-    def _outside(self, values: Vector) -> Vector:
+    def outside(self, values: Vector) -> Vector:
         """By how much values leave the bounds, relative to the bound; `LOST` where there is no value."""
         broken = np.zeros(np.shape(values))
         with np.errstate(invalid="ignore", over="ignore"):
@@ -94,7 +91,8 @@ class _Between(Constraint):
                 broken = np.maximum(broken, (values - self.most) / max(abs(self.most), 1.0))
         return np.where(np.isnan(values), LOST, np.minimum(np.maximum(broken, 0.0), 1e6))
 
-    def _bounds(self) -> str:
+    def bounds(self) -> str:
+        """The bounds in words."""
         low = f"at least {self.least:g}" if self.least is not None else ""
         high = f"at most {self.most:g}" if self.most is not None else ""
         return " and ".join(part for part in (low, high) if part)
@@ -102,7 +100,7 @@ class _Between(Constraint):
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bound(_Between):
+class Bound(Between):
     """A measure between bounds: `Bound(measure=vc.design..., most=10)`.
 
     Attributes:
@@ -113,22 +111,26 @@ class Bound(_Between):
 
     @property
     def title(self) -> str:
-        return f"{self.measure.name} {self._bounds()}"
+        """What it is, in words."""
+        return f"{self.measure.name} {self.bounds()}"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return self.measure.quantities
 
     def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
         self.measure.check(compiled)
 
     def broken(self, lanes: Lanes) -> Vector:
-        return self._outside(self.measure.of(lanes))
+        """By how much every design breaks it."""
+        return self.outside(self.measure.of(lanes))
 
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Relation(_Between):
+class Relation(Between):
     """A function of the variables between bounds, checked before anything is built.
 
     Attributes:
@@ -139,7 +141,8 @@ class Relation(_Between):
 
     @property
     def title(self) -> str:
-        return f"{getattr(self.value, 'text', 'relation')} {self._bounds()}"
+        """What it is, in words."""
+        return f"{getattr(self.value, 'text', 'relation')} {self.bounds()}"
 
     def broken(self, lanes: Lanes) -> Vector:
         """Nothing here: the problem checks relations first, see `of_variables`."""
@@ -153,7 +156,7 @@ class Relation(_Between):
                 values[k] = float(self.value(row))
             except (ArithmeticError, ValueError):
                 continue
-        return self._outside(values)
+        return self.outside(values)
 
 
 @final
@@ -163,18 +166,22 @@ class JointLimits(Constraint):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return "joint limits"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return ("configuration",)
 
     def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
         joints = compiled.mechanism.all_joints
         if not any(limit.lower is not None or limit.upper is not None for j in joints for limit in j.limits):
             raise ModelError("constraint 'joint limits': no joint of the mechanism has limits")
 
     def broken(self, lanes: Lanes) -> Vector:
+        """By how much every design breaks it."""
         found = np.zeros(len(lanes.reached))
         for design, place in zip(*np.nonzero(lanes.reached), strict=True):
             mechanism = lanes.mechanism(int(design))
@@ -206,10 +213,12 @@ class NoSingularity(Constraint):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return "no singularity inside"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return ("coordinated", "indeterminacy", *(SingularityDistance().quantities if self.margin else ()))
 
     def broken(self, lanes: Lanes) -> Vector:
@@ -220,121 +229,5 @@ class NoSingularity(Constraint):
         found = np.where(lanes.reached, lost, False).mean(axis=1) * LOST
         if self.margin:
             near = SingularityDistance().of(lanes)
-            found = found + np.where(
-                np.isnan(near), LOST, np.maximum(self.margin - near, 0.0) / self.margin
-            )
+            found = found + np.where(np.isnan(near), LOST, np.maximum(self.margin - near, 0.0) / self.margin)
         return np.asarray(found)
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Distance(_Between):
-    """The distance of two joints or contacts at every configuration: the length of a leg, say [m].
-
-    Attributes:
-        first: Name of a joint or contact.
-        second: Name of another.
-    """
-
-    first: str
-    second: str
-
-    @property
-    def title(self) -> str:
-        return f"distance {self.first} to {self.second} {self._bounds()}"
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        return ("configuration",)
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        points_of(compiled.mechanism, compiled.mechanism.home, (self.first, self.second))
-
-    def broken(self, lanes: Lanes) -> Vector:
-        def length(mechanism: Mechanism, q: Configuration) -> float:
-            one, two = points_of(mechanism, q, (self.first, self.second))
-            return float(np.linalg.norm(two - one))
-
-        return _worst(lanes, lambda mechanism, q: self._outside(np.array(length(mechanism, q))))
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Clearance(Constraint):
-    """The least distance of two straight legs at every configuration [m].
-
-    Attributes:
-        legs: Two pairs of names of joints or contacts: the ends of the legs' axes.
-        least: Smallest distance of the axes that is allowed.
-    """
-
-    legs: tuple[tuple[str, str], tuple[str, str]]
-    least: float
-
-    @property
-    def title(self) -> str:
-        one, two = ("-".join(leg) for leg in self.legs)
-        return f"clearance of {one} and {two} at least {self.least:g}"
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        return ("configuration",)
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        if not self.least > 0.0:
-            raise ModelError(f"constraint {self.name!r}: least is {self.least:g}: give a length above 0")
-        points_of(compiled.mechanism, compiled.mechanism.home, (*self.legs[0], *self.legs[1]))
-
-    def broken(self, lanes: Lanes) -> Vector:
-        def missing(mechanism: Mechanism, q: Configuration) -> float:
-            a, b, c, d = points_of(mechanism, q, (*self.legs[0], *self.legs[1]))
-            return max(0.0, 1.0 - segment_distance(a, b, c, d) / self.least)
-
-        return _worst(lanes, missing)
-
-
-def _worst(lanes: Lanes, amount: Callable[[Mechanism, Configuration], float | Vector]) -> Vector:
-    """The largest amount over the configurations reached by every design."""
-    found = np.zeros(len(lanes.reached))
-    for design, place in zip(*np.nonzero(lanes.reached), strict=True):
-        q = lanes.configuration(int(design), int(place))
-        found[design] = max(found[design], float(amount(lanes.mechanism(int(design)), q)))
-    return found
-
-
-def points_of(mechanism: Mechanism, q: Configuration, names: tuple[str, ...]) -> list[Vector]:
-    """Where joints and contacts are in ground axes at a configuration [m].
-
-    Raises:
-        UnknownNameError: A name that is no joint and no contact.
-    """
-    poses = mechanism.body_poses(q)
-    parts = {**{c.name: c for c in mechanism.contacts}, **{j.name: j for j in mechanism.all_joints}}
-    for name in names:
-        if name not in parts:
-            raise UnknownNameError("joint or contact", name, parts)
-    return [part_frames(parts[name], poses)[1].position for name in names]
-
-
-def segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
-    """Distance of the segments a-b and c-d.
-
-    It is attained inside both, or at an end of one of them; all five candidates are looked at.
-    """
-    ends = [_to_segment(a, c, d), _to_segment(b, c, d), _to_segment(c, a, b), _to_segment(d, a, b)]
-    u, v, w = b - a, d - c, a - c
-    table = np.array([[u @ u, -(u @ v)], [-(u @ v), v @ v]])
-    determinant = float(table[0, 0] * table[1, 1] - table[0, 1] ** 2)
-    if determinant > 0.0:
-        s = float(-(w @ u) * table[1, 1] - (w @ v) * table[0, 1]) / determinant
-        t = float((w @ v) * table[0, 0] + (w @ u) * table[0, 1]) / determinant
-        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
-            ends.append(float(np.linalg.norm(w + s * u - t * v)))
-    return min(ends)
-
-
-def _to_segment(point: Vector, a: Vector, b: Vector) -> float:
-    along = b - a
-    square = float(along @ along)
-    share = min(max(float((point - a) @ along) / square, 0.0), 1.0) if square > 0.0 else 0.0
-    return float(np.linalg.norm(point - a - share * along))

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, Literal, final
+from typing import TYPE_CHECKING, Final, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vincula.arrays import Vector
 from vincula.errors import ModelError, listing
-from vincula.kernels.plans import model_without_numbers
 from vincula.kernels.quantities import CLASS_CODES
-from vincula.numerics.rank import negligible
-from vincula.weights import UNIT, Weights
+from vincula.weights import Weights
 
 if TYPE_CHECKING:
     from vincula.design.lanes import Lanes
@@ -76,7 +73,7 @@ class Measure(ABC):
         """Its name in reports."""
         return self.label or self.title
 
-    def check(self, compiled: CompiledMechanism) -> None:
+    def check(self, compiled: CompiledMechanism) -> None:  # noqa: B027
         """Refuse what this mechanism cannot be judged by.
 
         Raises:
@@ -113,17 +110,21 @@ class SphereDistance(Measure):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return "distance to the unit sphere"
 
     @property
     def better(self) -> Sense:
+        """Whether smaller or larger is better."""
         return "smaller"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return ("kinematic.efficiencies", "kinematic.classes")
 
     def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
         values, classes = lanes["kinematic.efficiencies"], lanes["kinematic.classes"]
         finite = classes == CLASS_CODES["finite"]
         with np.errstate(invalid="ignore", over="ignore"):
@@ -151,7 +152,7 @@ class Index(Measure):
     def __post_init__(self) -> None:
         if self.sense is None and self._part not in SENSES:
             raise ModelError(
-                f"{self.quantity}: say whether smaller or larger is better; known by itself: {listing(SENSES)}"
+                f"{self.quantity}: say whether smaller or larger is better; known without: {listing(SENSES)}"
             )
 
     @property
@@ -161,111 +162,30 @@ class Index(Measure):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return self.quantity
 
     @property
     def better(self) -> Sense:
+        """Whether smaller or larger is better."""
         return self.sense or SENSES[self._part]
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return (self.quantity,)
 
     def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
         known = compiled.quantities.get(self.quantity)
         if known is not None and known.shape:
-            raise ModelError(f"{self.quantity} has {known.shape} numbers a configuration: choose one with one")
+            raise ModelError(
+                f"{self.quantity} has {known.shape} numbers a configuration: choose one with one"
+            )
 
     def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
         return np.asarray(lanes[self.quantity], dtype=float)
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Speed(Measure):
-    """Largest component of the member's twist along a direction, for a unit of motor effort.
-
-    Attributes:
-        direction: Components of the twist, order and units as `Space.twist_components`.
-    """
-
-    direction: tuple[float, ...]
-
-    @property
-    def title(self) -> str:
-        return f"speed along {_said(self.direction)}"
-
-    @property
-    def better(self) -> Sense:
-        return "larger"
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        return ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        _refuse_direction(self.direction, compiled)
-
-    def at(self, lanes: Lanes) -> Array:
-        values, classes = lanes["kinematic.efficiencies"], lanes["kinematic.classes"]
-        along = lanes["kinematic.task_directions"] @ np.asarray(self.direction)
-        finite = classes == CLASS_CODES["finite"]
-        squares = np.where(finite, np.where(finite, values, 0.0) * np.where(finite, along, 0.0) ** 2, 0.0)
-        free = (classes == CLASS_CODES["infinite"]).any(axis=-1)
-        return np.asarray(np.where(free, np.inf, np.sqrt(squares.sum(axis=-1))))
-
-
-@final
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Force(Measure):
-    """Largest load along a direction that a unit of motor torque resists (passive force ellipsoid, eq. 21).
-
-    Infinite where the structure carries it with no torque.
-
-    Attributes:
-        direction: Components of the wrench, order and units as `Space.wrench_components`.
-    """
-
-    direction: tuple[float, ...]
-
-    @property
-    def title(self) -> str:
-        return f"force along {_said(self.direction)}"
-
-    @property
-    def better(self) -> Sense:
-        return "larger"
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        parts = ("efficiencies", "classes", "task_directions")
-        return (*(f"passive_force.{part}" for part in parts), "configuration")
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        _refuse_direction(self.direction, compiled)
-
-    def at(self, lanes: Lanes) -> Array:
-        from vincula.analysis.manipulability import passive_force_ellipsoid
-
-        load = np.asarray(self.direction)
-        metric = lanes.metric("wrench")
-        values, classes = lanes["passive_force.efficiencies"], lanes["passive_force.classes"]
-        shares = lanes["passive_force.task_directions"] @ (metric.matrix @ load)
-        finite, free = (classes == CLASS_CODES[kind] for kind in ("finite", "infinite"))
-        whole = metric.definite & ((finite | free).sum(axis=-1) == len(load))
-        size = float(np.linalg.norm(metric.factor @ load))
-        found = np.full(values.shape[:-1], np.nan)
-        for place in zip(*np.nonzero(lanes.reached), strict=True):
-            if not whole[place]:
-                # Some wrench moves the member or is not weighed: the set itself says whether this one does.
-                model = lanes.model(*map(int, place))
-                found[place] = passive_force_ellipsoid(model, lanes.weights).along(load)
-                continue
-            own = finite[place]
-            part = shares[place][own]
-            carried = negligible(float(np.linalg.norm(part)), size)
-            found[place] = np.inf if carried else 1.0 / np.sqrt((part**2 / values[place][own]).sum())
-        return found
 
 
 @final
@@ -275,17 +195,21 @@ class SingularityDistance(Measure):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return "distance to singularity"
 
     @property
     def better(self) -> Sense:
+        """Whether smaller or larger is better."""
         return "larger"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return ("singularity.distance",)
 
     def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
         distances = lanes["singularity.distance"]
         known = np.where(np.isnan(distances), np.inf, distances).min(axis=-1)
         return np.asarray(np.where(np.isfinite(known), known, np.nan))
@@ -298,36 +222,23 @@ class WorkspaceShare(Measure):
 
     @property
     def title(self) -> str:
+        """What it is, in words."""
         return "share of the workspace"
 
     @property
     def better(self) -> Sense:
+        """Whether smaller or larger is better."""
         return "larger"
 
     @property
     def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
         return ()
 
     def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
         return np.asarray(lanes.reached, dtype=float)
 
     def of(self, lanes: Lanes) -> Vector:
+        """One value a design."""
         return np.asarray(lanes.reached.mean(axis=1), dtype=float)
-
-
-
-
-def _said(direction: Sequence[float]) -> str:
-    return "(" + ", ".join(f"{x:g}" for x in direction) + ")"
-
-
-def _refuse_direction(direction: Sequence[float], compiled: CompiledMechanism) -> None:
-    size = compiled.mechanism.space.dimension
-    values: Any = np.asarray(direction, dtype=float)
-    if values.shape != (size,) or not np.isfinite(values).all() or not values.any():
-        raise ModelError(f"direction {_said(direction)}: give {size} finite numbers, not all zero")
-
-
-def chosen_weights(compiled: CompiledMechanism) -> Weights:
-    """The weights that a compiled mechanism is evaluated with."""
-    return compiled.weights or model_without_numbers(compiled.mechanism).weights or UNIT

@@ -1,0 +1,127 @@
+"""Speed and force along a direction, as measures of a design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from vincula.design.measures import Array, Measure, Sense
+from vincula.errors import ModelError
+from vincula.kernels.quantities import CLASS_CODES
+from vincula.numerics.rank import negligible
+
+if TYPE_CHECKING:
+    from vincula.design.lanes import Lanes
+    from vincula.kernels.compiled import CompiledMechanism
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Speed(Measure):
+    """Largest component of the member's twist along a direction, for a unit of motor effort.
+
+    Attributes:
+        direction: Components of the twist, order and units as `Space.twist_components`.
+    """
+
+    direction: tuple[float, ...]
+
+    @property
+    def title(self) -> str:
+        """What it is, in words."""
+        return f"speed along {_said(self.direction)}"
+
+    @property
+    def better(self) -> Sense:
+        """Whether smaller or larger is better."""
+        return "larger"
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
+        return ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
+
+    def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
+        _refuse_direction(self.direction, compiled)
+
+    def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
+        values, classes = lanes["kinematic.efficiencies"], lanes["kinematic.classes"]
+        along = lanes["kinematic.task_directions"] @ np.asarray(self.direction)
+        finite = classes == CLASS_CODES["finite"]
+        squares = np.where(finite, np.where(finite, values, 0.0) * np.where(finite, along, 0.0) ** 2, 0.0)
+        free = (classes == CLASS_CODES["infinite"]).any(axis=-1)
+        return np.asarray(np.where(free, np.inf, np.sqrt(squares.sum(axis=-1))))
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Force(Measure):
+    """Largest load along a direction that a unit of motor torque resists (passive force ellipsoid, eq. 21).
+
+    Infinite where the structure carries it with no torque.
+
+    Attributes:
+        direction: Components of the wrench, order and units as `Space.wrench_components`.
+    """
+
+    direction: tuple[float, ...]
+
+    @property
+    def title(self) -> str:
+        """What it is, in words."""
+        return f"force along {_said(self.direction)}"
+
+    @property
+    def better(self) -> Sense:
+        """Whether smaller or larger is better."""
+        return "larger"
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
+        parts = ("efficiencies", "classes", "task_directions")
+        return (*(f"passive_force.{part}" for part in parts), "configuration")
+
+    def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
+        _refuse_direction(self.direction, compiled)
+
+    def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations."""
+        from vincula.analysis.manipulability import passive_force_ellipsoid
+
+        load = np.asarray(self.direction)
+        metric = lanes.metric("wrench")
+        values, classes = lanes["passive_force.efficiencies"], lanes["passive_force.classes"]
+        shares = lanes["passive_force.task_directions"] @ (metric.matrix @ load)
+        finite, free = (classes == CLASS_CODES[kind] for kind in ("finite", "infinite"))
+        whole = metric.definite & ((finite | free).sum(axis=-1) == len(load))
+        size = float(np.linalg.norm(metric.factor @ load))
+        found = np.full(values.shape[:-1], np.nan)
+        for place in zip(*np.nonzero(lanes.reached), strict=True):
+            if not whole[place]:
+                # Some wrench moves the member or is not weighed: the set itself says whether this one does.
+                model = lanes.model(*map(int, place))
+                found[place] = passive_force_ellipsoid(model, lanes.weights).along(load)
+                continue
+            own = finite[place]
+            part = shares[place][own]
+            carried = negligible(float(np.linalg.norm(part)), size)
+            found[place] = np.inf if carried else 1.0 / np.sqrt((part**2 / values[place][own]).sum())
+        return found
+
+
+def _said(direction: Sequence[float]) -> str:
+    return "(" + ", ".join(f"{x:g}" for x in direction) + ")"
+
+
+def _refuse_direction(direction: Sequence[float], compiled: CompiledMechanism) -> None:
+    size = compiled.mechanism.space.dimension
+    values: Any = np.asarray(direction, dtype=float)
+    if values.shape != (size,) or not np.isfinite(values).all() or not values.any():
+        raise ModelError(f"direction {_said(direction)}: give {size} finite numbers, not all zero")
