@@ -82,7 +82,7 @@ def reader(name: str) -> Reader:
         if kind != "json":
             seeds.append(Seed(data, path, tree))
         elif tree is not None:
-            seeds.append(Seed(json.dumps(tree).encode(), path, tree))
+            seeds.append(Seed(json.dumps(tree).encode(), path.with_suffix(".json"), tree))
     return Reader(name, kind, read, seeds)
 
 
