@@ -35,21 +35,27 @@ NOTHING = 1e-290
 
 
 @kernel
-def rotate_all(w: Slots, code: Code, base: int, z: Lane) -> bool:
-    """Rotate all pairs until none changes; whether that was reached."""
+def rotate_all(w: Slots, code: Code, base: int, z: Lane) -> Lane:
+    """Rotate all pairs until none changes; 1 in lanes where that was reached, else 0.
+
+    A lane in which nothing changes any more is left as it is while others go on.
+    """
     k, motors, size = code[t.FREEDOM], code[t.MOTORS], code[t.MOTORS] + code[t.TWIST]
     first, squares = base + code[t.MOTIONS], base + code[t.SQUARES]
-    for _ in range(SWEEPS):
+    changed = base + code[t.NOTES] + t.CHANGED
+    store(w, changed, z)
+    for sweep in range(1, SWEEPS + 1):
         measure(w, first, squares, k, motors, size, z)
-        changed = False
+        count = splat(float(sweep), z)
+        done = True
         for p in range(k - 1):
             for q in range(p + 1, k):
                 a, b = first + p * size, first + q * size
-                if _rotate(w, a, b, squares + 2 * p, squares + 2 * q, motors, size, z):
-                    changed = True
-        if not changed:
-            return True
-    return bool(k < 2)
+                if _rotate(w, a, b, squares + 2 * p, squares + 2 * q, motors, size, changed, count, z):
+                    done = False
+        if done:
+            break
+    return select(less(load(w, changed, z), splat(float(SWEEPS), z)), splat(1.0, z), z)
 
 
 @kernel
@@ -70,7 +76,9 @@ def measure(w: Slots, first: int, squares: int, k: int, motors: int, size: int, 
 
 
 @kernel
-def _rotate(w: Slots, a: int, b: int, of_a: int, of_b: int, motors: int, size: int, z: Lane) -> bool:
+def _rotate(
+    w: Slots, a: int, b: int, of_a: int, of_b: int, motors: int, size: int, changed: int, count: Lane, z: Lane
+) -> bool:
     """One rotation of columns a and b; whether any lane needed it."""
     inner_q, inner_u = z, z
     for i in range(motors):
@@ -84,8 +92,10 @@ def _rotate(w: Slots, a: int, b: int, of_a: int, of_b: int, motors: int, size: i
     gap = select(by_twist, b_u - a_u, a_q - b_q)
     product = select(by_twist, a_u * b_u, a_q * b_q)
     skew = more(inner * inner, splat(ORTHOGONAL, z) * product)
-    if not some_lane(either(skew, more(gap, z))):
+    active = either(skew, more(gap, z))
+    if not some_lane(active):
         return False
+    store(w, changed, select(active, count, load(w, changed, z)))
     twice = inner + inner
     radius = fma(gap, gap, twice * twice)
     inverse = rsqrt(radius)

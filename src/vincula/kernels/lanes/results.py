@@ -9,6 +9,7 @@ from vincula.kernels.lanes.vector import (
     absolute,
     at_least,
     both,
+    fma,
     larger,
     less,
     load,
@@ -28,7 +29,7 @@ ALIKE = 1.0 - 1e-9
 
 @kernel
 def finish(
-    w: Slots, code: Code, constants: Slots, base: int, certain: Lane, settled: bool, want: int, z: Lane
+    w: Slots, code: Code, constants: Slots, base: int, certain: Lane, settled: Lane, want: int, z: Lane
 ) -> None:
     """Results at `OUTPUT`: certain, residual, angle, efficiencies, bounds, and directions that are wanted.
 
@@ -38,16 +39,14 @@ def finish(
         constants: Constants.
         base: See `frames.place_all`.
         certain: 1 where all ranks are certain.
-        settled: Whether all rotations converged.
+        settled: 1 where all rotations converged.
         want: Added up: 1 motion directions, 2 effort directions, 4 free twists and idle rates.
         z: Zero.
     """
     out, notes = base + code[t.OUTPUT], base + code[t.NOTES]
     residual = load(w, notes + t.RESIDUAL, z)
     closed = select(less(residual, splat(CLOSED_SQUARE, z)), certain, z)
-    if not settled:
-        closed = z
-    store(w, out, closed)
+    store(w, out, closed * settled)
     store(w, out + 1, sqrt(residual))
     angle = load(w, notes + t.LIMB_INVERSE, z)
     store(w, out + 2, angle)
@@ -126,10 +125,10 @@ def _direction(
         largest = larger(absolute(x), largest)
     sign = _sign(w, task, d, largest * splat(ALIKE, z), z)
     for i in range(d):
-        store(w, task + i, load(w, task + i, z) * sign)
+        store(w, task + i, fma(load(w, task + i, z), sign, z))  # the sum makes -0.0 positive
     for i in range(motors):
         x = load(w, column + i, z) * of_q * constant(constants, w, metric + i, z)
-        store(w, motor + i, x * sign)
+        store(w, motor + i, fma(x, sign, z))
 
 
 @kernel

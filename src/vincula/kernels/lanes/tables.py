@@ -223,7 +223,9 @@ OBJECT_COUPLING: Final = 11
 """Sum over limbs of the same on the twist."""
 LIMB_COUPLING: Final = 12
 """That on the motors so far in the limb at hand."""
-NOTE_COUNT: Final = 13
+CHANGED: Final = 13
+"""Last round of rotations in which something changed."""
+NOTE_COUNT: Final = 14
 
 # A front: rows, pivots, their rank, other columns, rows handed on, mode, member, slot of what is handed on
 # (row after row), blocks (place, number), columns (place), children (place, number), order (place),
