@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from vincula.errors import ClosureError, ModelError, listing
+from vincula.errors import ClosureError, ModelError, SweepError, listing
 from vincula.kernels.quantities import coordinates
 from vincula.mechanism.configuration import Configuration
 
@@ -59,20 +59,23 @@ def looked_at_sweep(mechanism: Mechanism, sweep: Sweep) -> Looked:
     configurations only.
 
     Raises:
-        ModelError: A sweep of another mechanism or over parameters, too many points, or none that closes.
+        SweepError: A sweep of another mechanism or over parameters, or no point that closes.
+        ModelError: Too many points.
     """
     from vincula.sweep.sweep import Sweep
 
     changing = [variable.name for variable in sweep.inputs.variables if variable.kind == "parameter"]
     if changing:
-        raise ModelError(
+        raise SweepError(
             f"the sweep changes parameters ({listing(changing)}): motors are placed on one mechanism; "
-            "sweep over motors, joints or the pose of the reference member"
+            "sweep over motors, joints or the pose of the reference member",
+            kind="usage",
         )
     if coordinates(sweep.mechanism) != coordinates(mechanism):
-        raise ModelError(
+        raise SweepError(
             f"the sweep is over {sweep.mechanism.name!r}, which has other joints than {mechanism.name!r}: "
-            "give a sweep of the same mechanism"
+            "give a sweep of the same mechanism",
+            kind="usage",
         )
     _refuse_too_many(sweep.points.count)
     inner = Sweep(
@@ -107,7 +110,7 @@ def _linearized(
             found.append(q)
     if not models:
         first = next(iter(left_out.values()), "it has no points")
-        raise ModelError(f"no point of the sweep has a closed configuration; the first: {first}")
+        raise SweepError(f"no point of the sweep has a closed configuration; the first: {first}")
     return Looked(tuple(models), tuple(found), tuple(sorted(left_out.items())))
 
 

@@ -20,13 +20,13 @@ def pareto_front(values: Matrix) -> NDArray[np.bool_]:
     Returns:
         One boolean a row; equal rows are on the front together.
     """
-    missing: NDArray[np.bool_] = np.isnan(values)
-    front = np.array([not row.any() for row in missing], dtype=np.bool_)
+    front: NDArray[np.bool_] = np.asarray(np.isnan(values).sum(axis=1) == 0)
     known = values[front]
     beaten = np.zeros(len(known), dtype=bool)
     for start in range(0, len(known), CHUNK):
         part = known[start : start + CHUNK, np.newaxis, :]
-        as_good = (known >= part).all(axis=2)
-        beaten[start : start + CHUNK] = (as_good & (known > part).any(axis=2)).any(axis=1)
+        as_good = np.all(known >= part, axis=2)
+        better = np.any(known > part, axis=2)
+        beaten[start : start + CHUNK] = np.any(as_good & better, axis=1)
     front[front] = ~beaten
     return front

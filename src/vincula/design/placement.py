@@ -16,10 +16,10 @@ from vincula.analysis.doubt import mixed_units_message
 from vincula.analysis.indices import Part
 from vincula.analysis.ranking import CRITERIA
 from vincula.design.admissible import Admissible, Names, Sizes
+from vincula.design.choice_search import searched
 from vincula.design.configurations import Looked, Values, looked_at, looked_at_sweep
 from vincula.design.motor_choice import Judge, MotorChoice
 from vincula.design.pareto import pareto_front
-from vincula.design.search import searched
 from vincula.errors import ModelError, UnknownNameError, listing
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
@@ -170,6 +170,7 @@ def place(
         ModelError: No motors, more motors than joint axes, a name forbidden and required, a bad cost.
         UnknownNameError: A name that does not exist.
         ClosureError: A loop is open.
+        SweepError: A sweep of another mechanism or over parameters, or no point that closes.
         MissingReferenceError: No reference member is named.
         MixedUnitsError: An index over metres and radians with weights that nobody chose.
     """
