@@ -29,8 +29,12 @@ if TYPE_CHECKING:
     from vincula.analysis.result import Analysis, analyze
     from vincula.design.motor_choice import MotorChoice
     from vincula.design.placement import Placement, place
+    from vincula.design.problem import DesignProblem
+    from vincula.design.problems import design_problem
+    from vincula.design.variables import DesignVariable
     from vincula.errors import (
         ClosureError,
+        DesignError,
         DuplicateNameError,
         FileError,
         MissingExtraError,
@@ -49,6 +53,7 @@ if TYPE_CHECKING:
         WeightError,
     )
     from vincula.files.builder import FileBuilder, builder
+    from vincula.files.design_file import read_design
     from vincula.files.load import load
     from vincula.files.save import save
     from vincula.kernels.compiled import CompiledMechanism
@@ -83,7 +88,9 @@ if TYPE_CHECKING:
     from vincula.sweep.points import Grid, PointTable, Polyline
     from vincula.sweep.scattered import LowDiscrepancyPoints, RandomPoints
     from vincula.sweep.sweep import Sweep
+    from vincula.view.design_figure import plot_design
     from vincula.view.map_figure import plot_map
+    from vincula.view.placement_figure import plot_placement
     from vincula.view.plot import plot_comparison, plot_mechanism, save_figure
     from vincula.weights import Weights, characteristic_length_weights
 
@@ -100,6 +107,9 @@ __all__ = [
     "Coupling",
     "Cut",
     "Cylindrical",
+    "DesignError",
+    "DesignProblem",
+    "DesignVariable",
     "Drive",
     "DuplicateNameError",
     "Ellipsoid",
@@ -155,6 +165,7 @@ __all__ = [
     "characteristic_length_weights",
     "compile",
     "condition_number",
+    "design_problem",
     "dual_force_ellipsoid",
     "internal_force_ellipsoid",
     "inverse_condition_number",
@@ -167,8 +178,11 @@ __all__ = [
     "passive_force_ellipsoid",
     "place",
     "plot_comparison",
+    "plot_design",
     "plot_map",
     "plot_mechanism",
+    "plot_placement",
+    "read_design",
     "save",
     "save_figure",
     "smallest_singular_value",
@@ -178,6 +192,7 @@ __all__ = [
 _HOME = {
     "FileBuilder": "vincula.files.builder:FileBuilder",
     "builder": "vincula.files.builder:builder",
+    "read_design": "vincula.files.design_file:read_design",
     "load": "vincula.files.load:load",
     "save": "vincula.files.save:save",
     "Ellipsoid": "vincula.analysis.ellipsoid:Ellipsoid",
@@ -196,7 +211,11 @@ _HOME = {
     "MotorChoice": "vincula.design.motor_choice:MotorChoice",
     "Placement": "vincula.design.placement:Placement",
     "place": "vincula.design.placement:place",
+    "DesignProblem": "vincula.design.problem:DesignProblem",
+    "design_problem": "vincula.design.problems:design_problem",
+    "DesignVariable": "vincula.design.variables:DesignVariable",
     "ClosureError": "vincula.errors:ClosureError",
+    "DesignError": "vincula.errors:DesignError",
     "DuplicateNameError": "vincula.errors:DuplicateNameError",
     "FileError": "vincula.errors:FileError",
     "MissingExtraError": "vincula.errors:MissingExtraError",
@@ -258,8 +277,10 @@ _HOME = {
     "RandomPoints": "vincula.sweep.scattered:RandomPoints",
     "LowDiscrepancyPoints": "vincula.sweep.scattered:LowDiscrepancyPoints",
     "plot_comparison": "vincula.view.plot:plot_comparison",
+    "plot_design": "vincula.view.design_figure:plot_design",
     "plot_map": "vincula.view.map_figure:plot_map",
     "plot_mechanism": "vincula.view.plot:plot_mechanism",
+    "plot_placement": "vincula.view.placement_figure:plot_placement",
     "save_figure": "vincula.view.plot:save_figure",
 }
 

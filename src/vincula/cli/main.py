@@ -26,6 +26,7 @@ COMMANDS: Final = {
     "follow": "follow",
     "map": "map",
     "place": "place",
+    "design": "design",
     "sweep": "sweep",
     "plot": "plot",
     "convert": "convert",

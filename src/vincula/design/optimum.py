@@ -148,7 +148,7 @@ def optimize(
         around=around,
         runners_up=runners_up(problem, found),
         polish=how,
-        evaluated=asking.evaluated,
+        evaluated=len(found),
         seed=seed,
         converged=converged,
     )

@@ -12,11 +12,11 @@ from vincula.design.gradients import slope
 if TYPE_CHECKING:
     from vincula.design.asking import Asking
 
-STEP: Final = 0.01
-"""First size of a simplex, in parts of the range of a variable."""
+STEPS: Final = (0.01, -0.03, 0.002, 0.05, -0.01)
+"""First sizes of a simplex, in parts of the range: on a ridge one may be stuck where another is not."""
 MOST_A_VARIABLE: Final = 120
 """Most designs that a simplex may look at, a variable."""
-NO_SLOPE: Final = 1e-12
+NO_SLOPE: Final = 1e-9
 """Gain below which another look by the simplex is of no use."""
 
 
@@ -34,7 +34,8 @@ def polished(asking: Asking, design: Vector) -> tuple[Vector, str]:
     best, value, before = design, first, np.inf
     while before - value > NO_SLOPE * max(1.0, abs(value)):
         before = value
-        best, value = _by_simplex(asking, best, value)
+        for step in STEPS:
+            best, value = _by_simplex(asking, best, value, step)
     return best, "simplex"
 
 
@@ -69,7 +70,7 @@ def _by_gradients(asking: Asking, design: Vector) -> tuple[Vector, float] | None
     return np.clip(space.low + result.x * span, space.low, space.high), float(result.fun)
 
 
-def _by_simplex(asking: Asking, design: Vector, merit: float) -> tuple[Vector, float]:
+def _by_simplex(asking: Asking, design: Vector, merit: float, step: float) -> tuple[Vector, float]:
     """Nelder and Mead in the box, restarted by the caller while it gains."""
     from scipy.optimize import minimize
 
@@ -78,14 +79,14 @@ def _by_simplex(asking: Asking, design: Vector, merit: float) -> tuple[Vector, f
     unit = (design - space.low) / span
     simplex = np.tile(unit, (len(unit) + 1, 1))
     for k in range(len(unit)):
-        simplex[k + 1, k] += STEP if unit[k] + STEP <= 1.0 else -STEP
+        simplex[k + 1, k] += step if 0.0 <= unit[k] + step <= 1.0 else -step
 
     def value(at: Vector) -> float:
         return float(asking(np.clip(space.low + at * span, space.low, space.high)[None, :]).merit()[0])
 
     result = minimize(
         value, unit, method="Nelder-Mead", bounds=[(0.0, 1.0)] * len(unit),
-        options={"initial_simplex": simplex, "xatol": 1e-9, "fatol": 1e-13,
+        options={"initial_simplex": simplex, "xatol": 1e-8, "fatol": 1e-12,
                  "maxfev": MOST_A_VARIABLE * len(unit)},
     )  # fmt: skip
     if float(result.fun) <= merit:

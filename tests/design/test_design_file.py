@@ -1,0 +1,97 @@
+"""DESIGN.yaml and `vincula design`: what is read, what is refused where, what is written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import vincula as vc
+from vincula.cli.main import cli, finished
+
+GOOD = """\
+design: 1
+model: linkage.yaml
+variables:
+  left: {from: -1.5, to: -0.7, tolerance: 5mm}
+  right: {from: 80cm, to: 150cm, start: 100cm}
+ties:
+  "joints[o1]/at[0]": $left
+  "joints[o5]/at[0]": $right
+objectives: {quantity: "kinematic.condition:translation", over: mean}
+constraints:
+- {value: $right - $left, most: 2.9, label: room}
+search: {seed: 1, population: 6, generations: 1, samples: 4}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    vc.save(vc.load("example:five-bar"), tmp_path / "linkage.yaml")
+    (tmp_path / "design.yaml").write_text(GOOD)
+    return tmp_path
+
+
+def test_any_number_of_the_file_by_its_path(folder: Path) -> None:
+    problem = vc.read_design(folder / "design.yaml").problem
+    problem.path = "reference"
+    assert problem.space.start == pytest.approx([-1.1, 1.0])
+    assert problem.space.variables[1].unit == "cm"
+    same = vc.load("example:five-bar")
+    assert problem.mechanism([-1.0, 1.0]).linearize().jacobian_active == pytest.approx(
+        same.linearize().jacobian_active
+    )
+    judged = problem.judge([[-1.0, 1.0], [-1.5, 1.45]])
+    expected = vc.condition_number(vc.kinematic_ellipsoid(same.linearize()), "translation")
+    assert judged.objectives[0, 0] == pytest.approx(expected)
+    assert judged.counted(problem.names_of_constraints) == {"room": 1}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("joints[o5]", "joints[o6]", r"8:23: .*did you mean 'joints\[o5\]/at\[0\]'"),
+        ("-1.5, to: -0.7", "-0.5, to: -0.7", "4:9: variables/left: .*crossed"),
+        ("$right - $left", "$right % $left", "constraints.*not in the grammar"),
+        ("$right - $left", "$rigth - $left", "did you mean 'right'"),
+        ("over: mean", "ovr: mean", "9:.*unknown key 'ovr'.*did you mean 'over'"),
+        ("design: 1", "desing: 1", "expected the key `design: 1`"),
+        ("linkage.yaml", "example:fivebar", "2:8: model: .*did you mean 'five-bar'"),
+        ("condition:translation", "condtion:translation", "objectives.*no quantity is named"),
+    ],
+)
+def test_what_is_refused_has_a_place(folder: Path, old: str, new: str, words: str) -> None:
+    (folder / "bad.yaml").write_text(GOOD.replace(old, new))
+    with pytest.raises(vc.FileError, match=words):
+        vc.read_design(folder / "bad.yaml")
+
+
+def test_the_command_writes_what_analyze_reads(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    command = ["design", "design.yaml", "--path", "reference", "--json", "--log", "log.db", "-o", "best.yaml",
+               "--data", "all.csv", "--figure", "best.svg"]  # fmt: skip
+    first = CliRunner().invoke(cli, command, catch_exceptions=False)
+    assert first.exit_code == 0, first.output
+    report = json.loads(first.stdout)
+    assert report["schema"] == "vincula/design/1"
+    best = vc.load("best.yaml")
+    again = vc.condition_number(vc.kinematic_ellipsoid(best.linearize()), "translation")
+    assert report["best"]["value"] == pytest.approx(again, rel=1e-6)
+    assert report["best"]["value"] < report["start"]["value"]
+    again_run = CliRunner().invoke(cli, command, catch_exceptions=False)
+    assert json.loads(again_run.stdout) == report
+    rows = np.genfromtxt("all.csv", delimiter=",", names=True)
+    assert len(rows) == report["search"]["evaluated"]
+
+
+def test_exit_codes(folder: Path) -> None:
+    (folder / "none.yaml").write_text(GOOD.replace("most: 2.9", "most: 0.1"))
+
+    def run(*words: str) -> int:
+        return finished(lambda: cli.main(list(words), standalone_mode=False), debug=False)
+
+    assert run("design", str(folder / "none.yaml"), "--path", "reference", "--quiet") == 1
+    assert run("design", "example:stuart") == 2
