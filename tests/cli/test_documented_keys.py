@@ -10,6 +10,7 @@ import pytest
 COMMANDS = {
     "analyze": ["analyze", "example:five-bar"],
     "compare": ["compare", "example:five-bar", "--active", "all"],
+    "place": ["place", "example:five-bar", "--motors", "2"],
     "close": ["close", "example:five-bar"],
     "follow": ["follow", "example:five-bar", "--to", "o1=-0.1"],
     "inspect": ["inspect", "example:five-bar"],

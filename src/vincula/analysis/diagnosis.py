@@ -134,6 +134,9 @@ def indeterminate_motions(model: LinearModel) -> list[str]:
     said = []
     for column in localised(found, slice(n_p, None), model.ledger.subspace_doubt).T:
         twist = model.scaled.twist * column[n_p:]
+        if not np.any(twist):
+            said.append(f"{model.reference!r} moves with all motors locked; doubt hides the direction.")
+            continue
         joints = _taking_part(model.scaled.passive_column * column[:n_p], model.passives)
         how = f"direction {components(twist / (np.abs(twist).max() or 1.0), model.twist_components)}"
         if model.motions is not None and model.frame == "ground axes":
