@@ -101,7 +101,7 @@ ranking_options = together(
 @click.command(
     "place",
     short_help="Rank all choices of joints for the motors of FILE.",
-    epilog="Example: vincula place example:five-bar --motors 1..5 --forbid o3 --cost o2=2,o4=2",
+    epilog="Example: vincula place example:five-bar --motors 1..4 --forbid o3 --cost o2=2,o4=2",
 )
 @together(mechanism_options, close_option, choosing_options, ranking_options, weights_option)
 @click.option(
