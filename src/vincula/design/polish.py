@@ -12,10 +12,16 @@ from vincula.design.gradients import slope
 if TYPE_CHECKING:
     from vincula.design.asking import Asking
 
-STEPS: Final = (0.01, -0.03, 0.002, 0.05, -0.01)
+STEPS: Final = (0.01, -0.03)
 """First sizes of a simplex, in parts of the range: on a ridge one may be stuck where another is not."""
 MOST_A_VARIABLE: Final = 120
 """Most designs that a simplex may look at, a variable."""
+NEAR: Final = 0.05
+"""How far around a design other basins are looked for, in parts of the range."""
+LOOKS: Final = 24
+"""Random designs looked at there, a variable."""
+BASINS: Final = 3
+"""How many of them a simplex begins at besides."""
 NO_SLOPE: Final = 1e-9
 """Gain below which another look by the simplex is of no use."""
 
@@ -36,7 +42,22 @@ def polished(asking: Asking, design: Vector) -> tuple[Vector, str]:
         before = value
         for step in STEPS:
             best, value = _by_simplex(asking, best, value, step)
+        for begin in _beside(asking, best):
+            other, worth = _by_simplex(asking, begin, np.inf, STEPS[0])
+            if worth < value:
+                best, value = other, worth
     return best, "simplex"
+
+
+def _beside(asking: Asking, design: Vector) -> list[Vector]:
+    """The best of random designs around one, apart from it: where other basins may begin."""
+    space = asking.problem.space
+    span = space.high - space.low
+    random = np.random.default_rng(0).uniform(-NEAR, NEAR, (LOOKS * len(span), len(span)))
+    random = random[np.abs(random).max(axis=1) > 0.2 * NEAR]
+    found = asking(np.clip(design + random * span, space.low, space.high))
+    order = np.argsort(found.merit(), kind="stable")[:BASINS]
+    return [found.designs[k] for k in order if found.feasible[k]]
 
 
 def _by_gradients(asking: Asking, design: Vector) -> tuple[Vector, float] | None:
