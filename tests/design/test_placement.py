@@ -190,7 +190,7 @@ def test_the_points_of_a_sweep(five_bar) -> None:
 
 
 def test_sweeps_that_do_not_fit_and_points_that_do_not_close(five_bar) -> None:
-    other = vc.load("example:four-bar")
+    other = vc.load("example:four-bar-2a")
     with pytest.raises(vc.SweepError, match="other joints"):
         vc.place(five_bar, 2, over=vc.Sweep(other, vc.Grid({other.active[0]: [0.0]})))
     far = vc.Sweep(
