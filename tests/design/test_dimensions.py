@@ -61,6 +61,7 @@ def test_a_singular_platform_is_infinitely_far_away() -> None:
     assert judged.counted(problem.names_of_constraints) == {"no finite cost": 1}
 
 
+@pytest.mark.slow
 def test_the_local_search_climbs_to_the_best_value_known() -> None:
     """From beside the optimum, which is a ridge without gradient, the simplex reaches it."""
     from vincula.design.asking import Asking
