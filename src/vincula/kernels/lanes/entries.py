@@ -20,14 +20,14 @@ from vincula.kernels.lanes.angles import measure, rotate_all
 from vincula.kernels.lanes.certificates import certain_ranks, certify_twists
 from vincula.kernels.lanes.dense import dense_matrix
 from vincula.kernels.lanes.elimination import eliminate
-from vincula.kernels.lanes.frames import place_all
+from vincula.kernels.lanes.frames import borrowed, place_all
 from vincula.kernels.lanes.gaps import note_gaps
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
 from vincula.kernels.lanes.ranks import certain_counts
 from vincula.kernels.lanes.relation import relate
 from vincula.kernels.lanes.results import finish, write
 from vincula.kernels.lanes.rows import slopes
-from vincula.kernels.lanes.vector import zeros
+from vincula.kernels.lanes.vector import first_of, zeros
 from vincula.kernels.lanes.workspace import aligned, enter
 
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
@@ -70,10 +70,11 @@ def dense_entry(width: int) -> Any:
 
     @numba.njit(**_OPTIONS)
     def run(
-        values: Slots, code: Code, constants: Slots, base: int, columns: int, slots: int, out: Any
+        values: Slots, tables: Code, numbers: Slots, base: int, columns: int, slots: int, out: Any
     ) -> str:
         z = zeros(width)
-        w = aligned(slots, width)
+        room = aligned(slots, width)
+        w, code, constants = first_of(room), first_of(tables), borrowed(numbers)
         m, n = code[t.ROWS], code[t.COLUMNS] + code[t.TWIST]
         target = base + code[t.SLOTS]
         for block in range((values.shape[0] + width - 1) // width):
@@ -83,6 +84,7 @@ def dense_entry(width: int) -> Any:
                 for c in range(n):
                     for r in range(m):
                         out[block * width + lane, r, c] = w[(target + c * m + r) * width + lane]
+        room[0] = 0.0  # alive until here
         return stamp
 
     return run
@@ -113,14 +115,16 @@ def spectra_entry(width: int) -> Any:
 
     @numba.njit(**_OPTIONS)
     def run(
-        values: Slots, code: Code, constants: Slots, base: int, want: int, first: int, last: int, out: Slots
+        values: Slots, tables: Code, numbers: Slots, base: int, want: int, first: int, last: int, out: Slots
     ) -> str:
         z = zeros(width)
-        w = aligned(base + (code[t.TOTAL_WITH_COUNTS] if want & 8 else code[t.TOTAL]), width)
+        room = aligned(base + (tables[t.TOTAL_WITH_COUNTS] if want & 8 else tables[t.TOTAL]), width)
+        w, code, constants = first_of(room), first_of(tables), borrowed(numbers)
         for block in range(first, last):
             enter(w, code, constants, base, values, block, width, z)
             spectra(w, code, constants, base, want, z)
             write(w, base + code[t.OUTPUT], out.shape[1], out, block * width, width)
+        room[0] = 0.0  # alive until here
         return stamp
 
     return run

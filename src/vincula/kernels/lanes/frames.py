@@ -13,7 +13,7 @@ from numba.extending import overload
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
 from vincula.kernels.lanes.trigonometry import cosine_sine
-from vincula.kernels.lanes.vector import fma, fnma, load, neg, rsqrt, splat, store
+from vincula.kernels.lanes.vector import first_of, fma, fnma, load, neg, rsqrt, splat, store
 
 
 def constant(constants: Any, w: Slots, index: int, z: Lane) -> Any:
@@ -24,11 +24,27 @@ def constant(constants: Any, w: Slots, index: int, z: Lane) -> Any:
     raise TypeError(f"only for kernels: {type(constants)}")
 
 
+def _same_in_all(constants: Any) -> bool:
+    return not isinstance(constants, types.Array) or constants.ndim == 1
+
+
 @overload(constant, inline="never", strict=False)
 def _constant(constants: Any, w: Any, index: Any, z: Any) -> Any:
-    if isinstance(constants, types.Array) and constants.ndim == 1:
+    if _same_in_all(constants):
         return lambda constants, w, index, z: splat(constants[index], z)
     return lambda constants, w, index, z: load(w, index, z)
+
+
+def borrowed(constants: Any) -> Any:
+    """Constants as kernels take them: an address where they are the same in every lane."""
+    raise TypeError(f"only for kernels: {type(constants)}")
+
+
+@overload(borrowed, inline="never", strict=False)
+def _borrowed(constants: Any) -> Any:
+    if _same_in_all(constants):
+        return lambda constants: first_of(constants)  # noqa: PLW0108  numba wants the names
+    return lambda constants: constants
 
 
 def enter_constants(w: Slots, constants: Any, block: int, width: int) -> None:
@@ -38,7 +54,7 @@ def enter_constants(w: Slots, constants: Any, block: int, width: int) -> None:
 
 @overload(enter_constants, inline="never", strict=False)
 def _enter_constants(w: Any, constants: Any, block: Any, width: Any) -> Any:
-    if isinstance(constants, types.Array) and constants.ndim == 1:
+    if _same_in_all(constants):
         return lambda w, constants, block, width: None
 
     return lambda w, constants, block, width: _copied(w, constants, block, width)  # noqa: PLW0108

@@ -9,10 +9,10 @@ import numba
 
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.entries import fingerprint
-from vincula.kernels.lanes.frames import place_all
+from vincula.kernels.lanes.frames import borrowed, place_all
 from vincula.kernels.lanes.jit import Code, Slots
 from vincula.kernels.lanes.results import write
-from vincula.kernels.lanes.vector import zeros
+from vincula.kernels.lanes.vector import first_of, zeros
 from vincula.kernels.lanes.workspace import aligned, enter
 
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
@@ -24,13 +24,15 @@ def pose_entry(width: int) -> Any:
     stamp = fingerprint()
 
     @numba.njit(**_OPTIONS)
-    def run(values: Slots, code: Code, constants: Slots, base: int, out: Slots) -> str:
+    def run(values: Slots, tables: Code, numbers: Slots, base: int, out: Slots) -> str:
         z = zeros(width)
-        w = aligned(base + code[t.SLOTS], width)
+        room = aligned(base + tables[t.SLOTS], width)
+        w, code, constants = first_of(room), first_of(tables), borrowed(numbers)
         for block in range((values.shape[0] + width - 1) // width):
             enter(w, code, constants, base, values, block, width, z)
             place_all(w, code, constants, base, z)
             write(w, base + code[t.REFERENCE], 12, out, block * width, width)
+        room[0] = 0.0  # alive until here
         return stamp
 
     return run

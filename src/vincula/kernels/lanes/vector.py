@@ -15,6 +15,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
+from numba.core.types.misc import CPointer
 from numba.extending import intrinsic, models, overload, register_model
 
 _I32 = ir.IntType(32)
@@ -82,8 +83,24 @@ def zero_of(width: int) -> Any:
 # Memory ---------------------------------------------------------------------------------------------
 
 
+@intrinsic
+def first_of(context: Any, array: Any) -> Any:
+    """Address of the first number of an array, which its owner keeps alive.
+
+    Kernels take addresses: arrays would be counted in and out of every call.
+    """
+    if not isinstance(array, types.Array):
+        return None
+
+    def generate(c: Any, b: Any, s: Any, a: Any) -> Any:
+        return c.make_array(s.args[0])(c, b, a[0]).data
+
+    return CPointer(array.dtype)(array), generate
+
+
 def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any, width: int) -> Any:
-    data = context.make_array(kind)(context, builder, array).data
+    plain = isinstance(kind, CPointer)
+    data = array if plain else context.make_array(kind)(context, builder, array).data
     place = builder.gep(data, [builder.mul(index, ir.Constant(index.type, width))])
     return builder.bitcast(place, _llvm(width).as_pointer())
 
