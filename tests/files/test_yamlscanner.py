@@ -15,11 +15,16 @@ from tests.files.fuzzing.readers import reader
 from vincula.files.yamlscanner import yaml_events
 
 TRICKY = (
-    "a: b c\nd: e:f\n", "a: [b c, d:e, f#g, h #i\n]", "{a: 1, b : 2, c:3, d}", "{a:1}", "[a: b]", "a:\n  b\n  c\n",
-    "a: b\n c: d", "- a\n- b:\n- c: d\n", "word", "word:", "a: b: c", "? a\n: b", "{? a : b}", "a: .5e+3\n",
-    "x: $l/2*(3-1)\n", "a: b#c\n", "a: b #c\n", "{a: b\n, c: d\n}", "{a\n: b}", "[a\n, b]", "a.b/c: 1", "a:\tb",
-    "{a: 1,\n\tb: 2}", "a: 'b'\n", "[a]: b", "{[a, b]: c}", "a: |\n  b: c\n", "&x a: *x\n", "[a,b,c]", "{a: b}: c",
-    "é: 1\n", "a: é\n", "---\na: 1\n...\n", "%YAML 1.2\n---\na: 1\n", "a: 1\na: 2\n", ("k" * 1030) + ": 1\n",
+    "a: b c\nd: e:f\n", "a: [b c, d:e, f#g, h #i\n]", "{a: 1, b : 2, c:3, d}", "{a:1}",
+    "[a: b]", "a:\n  b\n  c\n",
+    "a: b\n c: d", "- a\n- b:\n- c: d\n", "word", "word:", "a: b: c", "? a\n: b",
+    "{? a : b}", "a: .5e+3\n",
+    "x: $l/2*(3-1)\n", "a: b#c\n", "a: b #c\n", "{a: b\n, c: d\n}", "{a\n: b}", "[a\n, b]",
+    "a.b/c: 1", "a:\tb",
+    "{a: 1,\n\tb: 2}", "a: 'b'\n", "[a]: b", "{[a, b]: c}", "a: |\n  b: c\n", "&x a: *x\n",
+    "[a,b,c]", "{a: b}: c",
+    "é: 1\n", "a: é\n", "---\na: 1\n...\n", "%YAML 1.2\n---\na: 1\n",
+    "a: 1\na: 2\n", ("k" * 1030) + ": 1\n",
     "{" + "k" * 1030 + ": 1}", "a: b\n  - c\n", "a: [1,\n2]: 3\n",
 )  # fmt: skip
 

@@ -188,7 +188,8 @@ class _Writer:
             )
         balls = [x.name for x in tree.loops if x.type == "spherical" and not mechanism.joint[x.name].closure]
         if balls:
-            found.append(f"loops closed by balls are connects, without joint values or rates: {listing(balls, 8)}")
+            words = "loops closed by balls are connects, without joint values or rates"
+            found.append(f"{words}: {listing(balls, 8)}")
         opened = [loop.name for loop in tree.loops if loop.open]
         if opened:
             found.append(

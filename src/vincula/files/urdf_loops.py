@@ -177,7 +177,8 @@ class GepettoLoops:
         found = []
         loops = [loop.name for loop in self._tree.loops if not loop.carried]
         if loops:
-            found.append(f"loops are named by their frames, without joint values or rates: {listing(loops, 8)}")
+            words = "loops are named by their frames, without joint values or rates"
+            found.append(f"{words}: {listing(loops, 8)}")
         called = [motor for motor, axis in self._mechanism.motors.items() if motor != axis]
         if called:
             found.append(f"motors are named by their joints: {listing(called, 8)}")
