@@ -2,6 +2,7 @@
 #
 #   make demo     the five-bar linkage: three tables, a comparison and a figure in build/demo
 #   make test     lint, types, tests
+#   make test-lanes   tests of the compiled kernels, with numba (extra fast)
 #   make lint     ruff and mypy alone
 #   make bench    timings side by side with other ways to the same numbers (docs/benchmarks.md)
 #   make setup    the development environment
@@ -24,7 +25,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench clean
+.PHONY: help setup demo test test-lanes lint bench clean
 
 help:
 	@sed -n '2,$$ { /^#/!q; s/^# \{0,1\}//p }' Makefile
@@ -58,6 +59,11 @@ lint: $(VENV)/.dev-ready
 
 test: lint
 	$(BIN)/pytest -q -n $(WORKERS)
+
+# Without numba these tests are skipped: kernels take minutes to compile the first time.
+test-lanes: $(VENV)/.dev-ready
+	$(PIP) install --editable ".[fast]"
+	$(BIN)/pytest -q -n $(WORKERS) tests/unit/kernels tests/laws/test_batch_is_loop.py
 
 # Yardsticks are installed for the benchmark alone; it goes on without those that cannot be had.
 $(VENV)/.bench-ready: pyproject.toml benchmarks/requirements.txt benchmarks/requirements-gpl.txt | $(BIN)/python
