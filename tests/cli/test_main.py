@@ -89,11 +89,14 @@ def test_help_lists_the_commands_in_the_order_of_work() -> None:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help_and_the_shared_options(command: str) -> None:
-    result = CliRunner().invoke(cli, [command, "--help"])
-    assert result.exit_code == 0
-    assert "--debug" in result.output
-    assert "--json" in result.output
-    assert result.output.count("\n\n") >= 2
+    found = cli.get_command(click.Context(cli), command)
+    below = list(found.commands) if isinstance(found, click.Group) else []
+    for words in [[command, name] for name in below] or [[command]]:
+        result = CliRunner().invoke(cli, [*words, "--help"])
+        assert result.exit_code == 0
+        assert "--debug" in result.output
+        assert "--json" in result.output
+        assert result.output.count("\n\n") >= 2
 
 
 def test_version() -> None:
