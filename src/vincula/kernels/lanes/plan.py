@@ -176,12 +176,12 @@ class _Writer:
         """Sizes, places and what is left."""
         code, d = self.code, self.twist
         reduced = sum(limb.rows for limb in relation.limbs)
-        widest = max([d, relation.freedom, *(limb.before for limb in relation.limbs)])
+        widest = max([d, relation.freedom, *(limb.before + len(limb.motors) for limb in relation.limbs)])
         self.side = max(self.side, reduced, code[t.MOTORS] + d)
         sizes = {
             t.BUFFER: self.buffer,
             t.FACTORS: 3 * self.side,
-            t.VECTOR: self.side + widest,
+            t.VECTOR: max(self.side + widest, relation.freedom * widest),
             t.STACK: reduced * d,
             t.BASIS: d * widest,
             t.MOTIONS: relation.freedom * (code[t.MOTORS] + d),

@@ -3,6 +3,9 @@
 Reduced rows C_a q_a + C_u u = 0 come limb by limb.  Twists are u = U y in terms of the motions y left so
 far; a limb with its motors q turns this into rows [C_a, C_u U] on (q, y), whose null space by reflections
 is the next y.  At the end y stands for all motions, and going back through the limbs gives the motors.
+
+Rows of U and motions y end at fixed slots and begin where their length says: a limb's motors are written
+before them, what its reflections clear is left behind, and nothing is ever moved.
 """
 
 from __future__ import annotations
@@ -28,8 +31,8 @@ def relate(w: Slots, code: Code, constants: Slots, base: int, z: Lane) -> None:
     basis, d, widest = base + code[t.BASIS], code[t.TWIST], code[t.WIDEST]
     for i in range(d):
         for j in range(d):
-            store(w, basis + i * widest + j, z)
-        store(w, basis + i * widest + i, splat(1.0, z))
+            store(w, basis + (i + 1) * widest - d + j, z)
+        store(w, basis + (i + 1) * widest - d + i, splat(1.0, z))
     for limb in range(code[t.LIMBS]):
         entry = code[t.LIMB] + t.LIMB_ENTRY * limb
         if code[entry + 1] > 0:
@@ -62,7 +65,8 @@ def _rows_on_motions(
                 continue
             for j in range(before):
                 place = column + motors + j
-                store(w, place, fma(x, load(w, basis + i * widest + j, z), load(w, place, z)))
+                known = load(w, basis + (i + 1) * widest - before + j, z)
+                store(w, place, fma(x, known, load(w, place, z)))
     factors = target + rows * length
     triangularise(w, target, length, code, code[entry + 7], code[entry + 6], rows, factors, z)
     trail = load(w, base + code[t.NOTES] + t.TRAIL, z)
@@ -78,50 +82,46 @@ def _next_basis(w: Slots, code: Code, base: int, entry: int, z: Lane) -> None:
     rows, motors, rank, order = code[entry + 1], code[entry + 2], code[entry + 6], code[entry + 7]
     before, d, widest = code[entry + 9], code[t.TWIST], code[t.WIDEST]
     length = motors + before
-    target, vector = base + code[entry + 8], base + code[t.VECTOR]
+    target = base + code[entry + 8]
     factors, basis = target + rows * length, base + code[t.BASIS]
     for i in range(d):
+        row = basis + (i + 1) * widest - length
         for j in range(motors):
-            store(w, vector + j, z)
-        for j in range(before):
-            store(w, vector + motors + j, load(w, basis + i * widest + j, z))
+            store(w, row + j, z)
         for h in range(rank):
-            apply(w, target + code[order + h] * length, h, length, factors + 3 * h, vector, z)
-        for j in range(length - rank):
-            store(w, basis + i * widest + j, load(w, vector + rank + j, z))
+            apply(w, target + code[order + h] * length, h, length, factors + 3 * h, row, z)
 
 
 @kernel
 def _motions(w: Slots, code: Code, base: int, z: Lane) -> None:
     """Every motion y = e_p, back through the limbs: motors first, then the twist."""
     k, d, widest = code[t.FREEDOM], code[t.TWIST], code[t.WIDEST]
-    motors, vector = code[t.MOTORS], base + code[t.VECTOR]
+    size, vectors, motions = code[t.MOTORS] + d, base + code[t.VECTOR], base + code[t.MOTIONS]
     for p in range(k):
-        column = base + code[t.MOTIONS] + p * (motors + d)
         for j in range(k):
-            store(w, vector + j, z)
-        store(w, vector + p, splat(1.0, z))
-        for limb in range(code[t.LIMBS] - 1, -1, -1):
-            _back(w, code, base, code[t.LIMB] + t.LIMB_ENTRY * limb, column, vector, z)
+            store(w, vectors + (p + 1) * widest - k + j, z)
+        store(w, vectors + (p + 1) * widest - k + p, splat(1.0, z))
+    for limb in range(code[t.LIMBS] - 1, -1, -1):
+        entry = code[t.LIMB] + t.LIMB_ENTRY * limb
+        for p in range(k):
+            _back(w, code, base, entry, motions + p * size, vectors + (p + 1) * widest, z)
+    for p in range(k):
         for i in range(d):
-            store(w, column + motors + i, load(w, base + code[t.BASIS] + i * widest + p, z))
+            known = load(w, base + code[t.BASIS] + (i + 1) * widest - k + p, z)
+            store(w, motions + p * size + code[t.MOTORS] + i, known)
 
 
 @kernel
-def _back(w: Slots, code: Code, base: int, entry: int, column: int, vector: int, z: Lane) -> None:
-    """From the motions after a limb to its motors and the motions before it."""
+def _back(w: Slots, code: Code, base: int, entry: int, column: int, end: int, z: Lane) -> None:
+    """From the motions after a limb to its motors and the motions before it; both end at a slot."""
     rows, motors, own = code[entry + 1], code[entry + 2], code[entry + 3]
     rank, order, before = code[entry + 6], code[entry + 7], code[entry + 9]
     length = motors + before
-    target = base + code[entry + 8]
+    target, first = base + code[entry + 8], end - length
     factors = target + rows * length
-    for j in range(length - rank - 1, -1, -1):
-        store(w, vector + rank + j, load(w, vector + j, z))
     for j in range(rank):
-        store(w, vector + j, z)
+        store(w, first + j, z)
     for h in range(rank - 1, -1, -1):
-        apply(w, target + code[order + h] * length, h, length, factors + 3 * h, vector, z)
+        apply(w, target + code[order + h] * length, h, length, factors + 3 * h, first, z)
     for j in range(motors):
-        store(w, column + code[own + j], load(w, vector + j, z))
-    for j in range(before):
-        store(w, vector + j, load(w, vector + motors + j, z))
+        store(w, column + code[own + j], load(w, first + j, z))
