@@ -56,7 +56,7 @@ def test_the_index_is_current_and_nothing_is_left_over(root: Path, maker: Module
 
 def test_every_figure_that_a_page_shows_is_there(root: Path) -> None:
     shown = set()
-    for path in (root / "docs" / "examples").glob("*.md"):
+    for path in [root / "README.md", *(root / "docs").rglob("*.md")]:
         for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", path.read_text(encoding="utf-8")):
             figure = (path.parent / target).resolve()
             assert figure.is_file()

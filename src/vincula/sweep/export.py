@@ -152,6 +152,9 @@ def _parquet(data: xarray.Dataset, path: Path) -> None:
             writer.close()
 
 
+_FREE = {"variables": "sweep_variables", "dimensions": "sweep_dimensions"}
+
+
 def _netcdf(data: xarray.Dataset, path: Path) -> None:
     plain = data.copy()
     for name in list(plain.variables):
@@ -161,7 +164,8 @@ def _netcdf(data: xarray.Dataset, path: Path) -> None:
         plain[name] = variable.astype(np.int16) if variable.dtype.kind == "u" else variable
         plain[name].attrs = told
         plain[name].encoding = {}
-    plain.attrs = {key: _plain(value) for key, value in data.attrs.items()}
+    # scipy keeps attributes of the file as attributes of its own object, beside its own `variables`.
+    plain.attrs = {_FREE.get(key, key): _plain(value) for key, value in data.attrs.items()}
     if find_spec("h5netcdf") is None:
         plain.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
     else:

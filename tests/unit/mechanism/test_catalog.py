@@ -14,7 +14,7 @@ from vincula.analysis.manipulability import (
     passive_force_ellipsoid,
 )
 from vincula.errors import ModelError, NonFiniteError, UnknownNameError
-from vincula.mechanism.catalog import entry, example, examples
+from vincula.mechanism.catalog.registry import entry, example, examples
 from vincula.mechanism.mechanism import Mechanism
 from vincula.spatial.space import PLANAR
 

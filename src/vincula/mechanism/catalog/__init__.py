@@ -4,6 +4,6 @@ Each is drawn with the ordinary constructors and carries its motors, its referen
 unit weights, so that every analysis runs on it as it is.
 """
 
-from vincula.mechanism.catalog.registry import entry, example, examples
+from vincula.mechanism.catalog.registry import example, examples
 
-__all__ = ["entry", "example", "examples"]
+__all__ = ["example", "examples"]
