@@ -100,9 +100,8 @@ def test_every_point_reached_is_closed_and_where_it_should_be() -> None:
     found = led_five_bar()
     mechanism, sheet = found.mechanism, found.sheets[0]
     compiled = vc.compile(mechanism)
-    closed = compiled.evaluate(
-        sheet.configurations[sheet.reached], ["closure.residual", "reference.pose", INDEX]
-    )
+    asked = ["closure.residual", "reference.pose", INDEX]
+    closed = compiled.evaluate(sheet.configurations[sheet.reached], asked, path="reference")
     assert closed["closure.residual"].max() < 1e-11
     first, second = np.meshgrid(*found.grid, indexing="ij")
     places = np.stack([first, second], axis=-1)[sheet.reached]

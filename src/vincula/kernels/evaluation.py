@@ -112,12 +112,17 @@ class Evaluation(Mapping[str, NDArray[Any]]):
         }
 
 
+def plain_floats(array: NDArray[np.float64]) -> Any:
+    """Numbers as nested lists for JSON: infinity is "inf", NaN is null."""
+    plain = array.astype(object)
+    plain[np.isnan(array)] = None
+    plain[np.isposinf(array)] = "inf"
+    return plain.tolist()
+
+
 def _plain(array: NDArray[Any], quantity: Quantity) -> Any:
     if array.dtype.kind == "f":
-        plain = array.astype(object)
-        plain[np.isnan(array)] = None
-        plain[np.isposinf(array)] = "inf"
-        return plain.tolist()
+        return plain_floats(array)
     if quantity.fill == NO_COUNT:
         plain = array.astype(object)
         plain[array == NO_COUNT] = None

@@ -13,9 +13,11 @@ import numpy as np
 
 from vincula.analysis.sensitivity import Sensitivities
 from vincula.arrays import Matrix, Vector
+from vincula.mechanism.closure_solver import minimum_norm
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import held_columns, holding, problem_for
 from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.modes import motors_at
 from vincula.mechanism.second_order import MatrixDerivative
 from vincula.model import LinearModel
 from vincula.numerics.lapack import svd
@@ -108,7 +110,7 @@ class Tangents:
             at: Values of all parameters here [m, rad].
             name: The one that changes.
         """
-        held = holding(self.mechanism, _motor_values(self.mechanism, self.q))
+        held = holding(self.mechanism, motors_at(self.mechanism, self.q))
         problem = problem_for(self.mechanism, held)
         free = ~held_columns(problem, held)
         state = problem.start(self.q)
@@ -122,7 +124,7 @@ class Tangents:
 
         opening = (8.0 * (gaps(size) - gaps(-size)) - (gaps(2 * size) - gaps(-2 * size))) / (12.0 * size)
         follow = np.zeros(problem.columns)
-        follow[free] = _closing(problem.equations(state).jacobian[:, free], opening)
+        follow[free] = minimum_norm(problem.equations(state).jacobian[:, free], -opening)
 
         def matrices(step: float) -> tuple[Matrix, Matrix, Matrix]:
             mechanism = varied(step)
@@ -151,29 +153,7 @@ class Tangents:
         return Direction(rate)
 
 
-def _closing(jacobian: Matrix, opening: Vector) -> Vector:
-    """The shortest step rate that undoes gaps opening at a rate."""
-    left, values, right = svd(jacobian)
-    rank = decide_rank(jacobian, name="closure equations", values=values).rank
-    return np.asarray(-(right[:, :rank] / values[:rank]) @ (left[:, :rank].T @ opening))
-
-
 def _slopes(
     plus: tuple[Matrix, Matrix, Matrix], minus: tuple[Matrix, Matrix, Matrix], between: float
 ) -> list[Matrix]:
     return [(one - other) / between for one, other in zip(plus, minus, strict=True)]
-
-
-def _motor_values(mechanism: Mechanism, q: Configuration) -> dict[str, float]:
-    """Values of the motors that have one; motors over several axes are the combination."""
-    from vincula.mechanism.residuals import axis_values
-
-    values = axis_values(mechanism, q)
-    drives = {d.name: d for d in mechanism.drives}
-    found: dict[str, float] = {}
-    for name in mechanism.active:
-        if name in values:
-            found[name] = values[name]
-        elif name in drives:
-            found[name] = sum(c * values[a] for a, c in drives[name].drives.items())
-    return found

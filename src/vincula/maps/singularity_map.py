@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, ModelError, listing
 from vincula.kernels.compiled import compile_mechanism
-from vincula.kernels.evaluation import NO_CLOSURE, STATUS_NAMES
+from vincula.kernels.evaluation import NO_CLOSURE, STATUS_NAMES, plain_floats
 from vincula.maps.curves import Curve, curves, distances, outline
 from vincula.maps.loci import KINDS, between, crossings, outer_edge
 from vincula.maps.sheet import Sheet, mask
@@ -278,8 +278,8 @@ def _sheet_dict(sheet: MapSheet) -> dict[str, Any]:
         "start": {name: value.tolist() for name, value in sheet.start.items()},
         "reached": sheet.reached.tolist(),
         "status": sheet.status.tolist(),
-        "quantities": {name: _plain(values) for name, values in sheet.quantities.items()},
-        "distance": _plain(sheet.distance),
+        "quantities": {name: plain_floats(values) for name, values in sheet.quantities.items()},
+        "distance": plain_floats(sheet.distance),
         "curves": [
             {
                 "kind": curve.kind,
@@ -291,10 +291,3 @@ def _sheet_dict(sheet: MapSheet) -> dict[str, Any]:
             for curve in sheet.curves
         ],
     }
-
-
-def _plain(values: NDArray[np.float64]) -> Any:
-    plain = values.astype(object)
-    plain[np.isnan(values)] = None
-    plain[np.isposinf(values)] = "inf"
-    return plain.tolist()

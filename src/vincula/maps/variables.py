@@ -15,6 +15,7 @@ from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import Holding, holding
 from vincula.mechanism.kinematics import reference_position
 from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.modes import motors_at
 from vincula.mechanism.residuals import axis_linear, axis_values
 from vincula.spatial.poses import Pose, rotation_about
 
@@ -80,6 +81,7 @@ class Plane:
         s = mechanism.space.translations
         self._positions, self._turns = POSITIONS[:s], TURNS[s]
         self._scalar = axis_values(mechanism, start)
+        self._motors = motors_at(mechanism, start)
         poses = mechanism.body_poses(start)
         self._point = reference_position(mechanism, poses)
         reference = mechanism.reference
@@ -106,8 +108,7 @@ class Plane:
         """What is held at a point of the plane."""
         asked = dict(zip((v.name for v in self.variables), map(float, values), strict=True))
         if not self.of_member:
-            motors = {name: self._scalar[name] for name in self.mechanism.active if name in self._scalar}
-            return holding(self.mechanism, {**motors, **asked})
+            return holding(self.mechanism, {**self._motors, **asked})
         point = self._point.copy()
         for k, name in enumerate(self._positions):
             point[k] = asked.get(name, point[k])
