@@ -13,26 +13,11 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from tests.parity.mjcf_cases import CASES, CONTACTS
 
 from vincula.cli.main import cli
 
-CASES = (
-    "aloha_dualarm_complete",
-    "aloha_dualarm_complete_right_wrist_passive",
-    "aloha_dualarm_hard",
-    "leap_4finger_hard",
-    "leap_4finger_soft",
-    "robotiq2f85_grasp_driver0p4_parallel_complete",
-    "robotiq2f85_grasp_driver0p4_parallel_hard",
-    "robotiq2f85_pad_driver0p4_parallel_springs_locked",
-    "robotiq2f85_pad_home_springs_locked",
-    "robotiq2f85_pad_home_underactuated",
-    "stewart_sdf_generic",
-    "stewart_sdf_generic_8_actuated",
-    "stewart_sdf_home",
-)
 URDF_CASES = ("gepetto_5bar_linkage", "gepetto_5bar_linkage_iso3d", "gepetto_robot_delta")
-CONTACT = {"hard": "hard-finger", "soft": "soft-finger", "complete": "complete"}
 
 
 def overlay(case: dict[str, Any], model: Path, folder: Path) -> Path:
@@ -40,7 +25,7 @@ def overlay(case: dict[str, Any], model: Path, folder: Path) -> Path:
     contacts = [
         {
             "name": f"c{i + 1}",
-            "type": CONTACT[contact["type"]],
+            "type": CONTACTS[contact["type"]],
             "bodies": [contact["body"], "object"],
             "at": contact["point_world"],
             "normal": contact["normal_world"],

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.parity.mjcf_cases import CASES, CONTACTS
 
 import vincula as vc
 from vincula.analysis.result import analyze
@@ -19,23 +20,6 @@ from vincula.mechanism.mechanism import Mechanism
 from vincula.spatial.space import SPATIAL
 
 pytest.importorskip("mujoco")
-
-CASES = (
-    "aloha_dualarm_complete",
-    "aloha_dualarm_complete_right_wrist_passive",
-    "aloha_dualarm_hard",
-    "leap_4finger_hard",
-    "leap_4finger_soft",
-    "robotiq2f85_grasp_driver0p4_parallel_complete",
-    "robotiq2f85_grasp_driver0p4_parallel_hard",
-    "robotiq2f85_pad_driver0p4_parallel_springs_locked",
-    "robotiq2f85_pad_home_springs_locked",
-    "robotiq2f85_pad_home_underactuated",
-    "stewart_sdf_generic",
-    "stewart_sdf_generic_8_actuated",
-    "stewart_sdf_home",
-)
-CONTACTS = {"hard": "hard-finger", "soft": "soft-finger", "complete": "complete"}
 
 
 def mechanism_of(shared: Path, case: dict[str, Any]) -> Mechanism:
