@@ -1,7 +1,8 @@
-"""Batch = loop on every example, by hand: `python -m benchmarks.batch [configurations] [example ...]`.
+"""Batch = loop, by hand: `python -m benchmarks.batch [configurations] [mechanism ...]`.
 
 Random closed configurations, a third of them in or near singularities, are evaluated in lanes and one by
-one.  Counts, classes and status must be the same, efficiencies within 1e-10 where they are well
+one.  A mechanism is the name of an example (by default all of them), FILE@REFERENCE-BODY or random:SEED.
+Counts, classes and status must be the same, efficiencies within 1e-10 where they are well
 conditioned and within the reported bound elsewhere, and lanes must give the same bits for any batch
 size, chunking and number of threads.  100 000 configurations take about an hour.
 """
@@ -10,10 +11,12 @@ from __future__ import annotations
 
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 from tests.laws.batch_and_loop import COMPARED, compared
 from tests.laws.random_configurations import random_configurations
+from tests.laws.random_mechanisms import random_mechanism
 
 import vincula as vc
 from vincula.mechanism.catalog import examples
@@ -33,6 +36,14 @@ def identical(compiled: vc.CompiledMechanism, lanes: np.ndarray) -> bool:
     return True
 
 
+def mechanism_of(word: str) -> vc.Mechanism:
+    """An example by name, FILE@BODY with its reference member, or random:SEED."""
+    if word.startswith("random:"):
+        return random_mechanism(int(word.removeprefix("random:")))
+    path, at, body = word.rpartition("@")
+    return vc.load(path).with_reference(body) if at else vc.load(f"example:{word}")
+
+
 def main(count: int, names: list[str]) -> int:
     """Print one line an example; 1 if anything differs."""
     print(f"{'example':20}{'lanes':>8}{'special':>9}{'status':>8}{'integers':>10}{'values':>8}"
@@ -40,12 +51,12 @@ def main(count: int, names: list[str]) -> int:
     bad = 0
     for name in names:
         began = time.perf_counter()
-        compiled = vc.compile(vc.load(f"example:{name}"))
+        compiled = vc.compile(mechanism_of(name))
         lanes = random_configurations(compiled.mechanism, count // len(names))
         found = compared(compiled, lanes)
         same = identical(compiled, lanes)
         bad += not (found.same and same)
-        print(f"{name:20}{found.lanes:8}{found.special:9}{found.status:8}{found.integers:10}{found.values:8}"
+        print(f"{Path(name).name[-19:]:20}{found.lanes:8}{found.special:9}{found.status:8}{found.integers:10}{found.values:8}"
               f"{found.largest:10.1e}{found.turned:10.1e}  {'same' if same else 'DIFFER'}"
               f"{time.perf_counter() - began:9.0f}", flush=True)  # fmt: skip
         for note in found.notes:
