@@ -20,7 +20,7 @@ FILES = sorted(
 UNSUPPORTED = {
     "urdf/unknown-drake-constraint.urdf", "urdf/unknown-drake-joint.urdf", "urdf/unknown-transmission.urdf",
     "sdf/drake-curve.sdf", "sdf/drake-tendon.sdf", "sdf/gearbox.sdf", "sdf/include.sdf",
-    "sdf/nested-model.sdf", "sdf/world.sdf",
+    "sdf/joint-between-models.sdf", "sdf/nested-model.sdf", "sdf/two-models.sdf", "sdf/world.sdf",
 }  # fmt: skip
 NOWHERE = {
     "urdf/namespace.urdf", "urdf/wrong-root.urdf", "urdf/unexpanded-xacro.urdf", "urdf/no-links.urdf",

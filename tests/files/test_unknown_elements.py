@@ -30,15 +30,14 @@ def with_extra(text: str, tag: str, chance: random.Random, *, inside: str) -> st
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def test_harmless_ones_are_ignored_and_counted(tmp_path: Path) -> None:
-    """In URDF; SDF names all its elements, and an unknown one there is refused wherever it is."""
-    name = "robot.urdf"
+@pytest.mark.parametrize("name", TEXTS)
+def test_harmless_ones_are_ignored_and_counted(name: str, tmp_path: Path) -> None:
     chance = random.Random(name)
     path = tmp_path / name
     path.write_text(TEXTS[name], encoding="utf-8")
     mechanism, report = load_with_report(path)
     before = sum(count["total"] for count in report.counts().values())
-    for inside in ("robot", "link"):
+    for inside in ("robot", "link", "joint") if name == "robot.urdf" else ("model", "link", "joint", "axis"):
         for tag in HARMLESS:
             path.write_text(with_extra(TEXTS[name], tag, chance, inside=inside), encoding="utf-8")
             same, longer = load_with_report(path)
@@ -57,6 +56,55 @@ def test_possible_loops_are_refused(name: str, tag: str, tmp_path: Path) -> None
         path.write_text(with_extra(TEXTS[name], tag, chance, inside=inside), encoding="utf-8")
         with pytest.raises(vc.FileError, match=rf"{path.name}:\d+:\d+: .*{tag}"):
             vc.load(path)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("tag", ["axs", "jiont", "lnk", "posse", "orgin", "limmit"])
+def test_slips_of_the_pen_are_refused(name: str, tag: str, tmp_path: Path) -> None:
+    """An axis that is read as its default because its tag is misspelt would be a wrong mechanism."""
+    path = tmp_path / name
+    path.write_text(with_extra(TEXTS[name], tag, random.Random(tag), inside="joint"), encoding="utf-8")
+    with pytest.raises(vc.FileError, match=rf"<{tag}> is not understood in <joint>: .*slip of the pen"):
+        vc.load(path)
+
+
+def test_namespaces_of_vendors_are_ignored(tmp_path: Path) -> None:
+    """SDF allows elements of other namespaces everywhere."""
+    path = tmp_path / "model.sdf"
+    for around in ("<model ", "<link ", "<joint ", "<axis>"):
+        at = TEXTS["model.sdf"].index(">", TEXTS["model.sdf"].index(around)) + 1
+        text = (
+            TEXTS["model.sdf"][:at]
+            + '<gz:style gz:colour="red"><gz:shade/></gz:style>'
+            + TEXTS["model.sdf"][at:]
+        )
+        path.write_text(text.replace("<sdf ", '<sdf xmlns:gz="g" ', 1), encoding="utf-8")
+        assert load_with_report(path)[1].counts()["gz:style"]["ignored"] == 1
+
+
+WORLD = """
+<sdf version="1.9"><world name="w">
+  <light name="sun" type="directional"/> <physics name="p" type="ode"/> <gravity>0 0 -9.8</gravity>
+  <model name="floor"><static>true</static><link name="f"/></model>
+  {}
+</world></sdf>
+"""
+
+
+def test_the_one_model_of_a_world_that_moves_is_read(tmp_path: Path) -> None:
+    text = TEXTS["model.sdf"]
+    alone = load_with_report(_written(tmp_path / "model.sdf", text))[0]
+    inside = WORLD.format(text[text.index("<model") : text.index("</sdf>")])
+    mechanism, report = load_with_report(_written(tmp_path / "world.sdf", inside))
+    assert [joint.name for joint in mechanism.joints] == [joint.name for joint in alone.joints]
+    told = {entry.kind: entry.detail for entry in report.entries if entry.fate == "ignored"}
+    assert told["model"] == "it is static: a part of the surroundings"
+    assert {"light", "physics", "gravity"} <= told.keys()
+
+
+def _written(path: Path, text: str) -> Path:
+    path.write_text(text, encoding="utf-8")
+    return path
 
 
 def test_counts_of_every_shared_model_add_up(models: Path) -> None:

@@ -7,16 +7,19 @@ two frames: if the links are drawn apart, they are placed by their joints.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import Final
 
 from vincula.files.dialects.drake import read_constraint
+from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.packages import Packages, record_meshes
 from vincula.files.problems import Problems, shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, RobotDraft
 from vincula.files.sdf_frames import MODEL, SdfFrames
-from vincula.files.sdf_joints import SdfJoints, end_of
+from vincula.files.sdf_joints import KNOWN_IN_JOINTS, SdfJoints, end_of
+from vincula.files.sdf_models import only_model
 from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
 from vincula.files.xmltree import Element, parse_xml
@@ -35,7 +38,7 @@ _MODEL_PARTS: Final = {
 _LINK_PARTS: Final = (
     "inertial", "visual", "collision", "sensor", "projector", "audio_source", "audio_sink", "battery",
     "light", "particle_emitter", "gravity", "enable_wind", "self_collide", "kinematic", "must_be_base_link",
-    "velocity_decay",
+    "velocity_decay", "plugin",
 )  # fmt: skip
 
 
@@ -46,7 +49,7 @@ def load_sdf(
     snapping: Snapping | None = None,
     packages: Packages | None = None,
 ) -> tuple[Mechanism, LoadReport]:
-    """The mechanism of an SDF file with one model, at the drawn pose.
+    """The mechanism of an SDF file with one model (in a world: one that is not static), at the drawn pose.
 
     The ground is the world where a joint leads to it, otherwise the link that is nobody's child (of
     several the first).
@@ -84,6 +87,7 @@ class _SdfReader:
         self.frames = SdfFrames(self.problems, self.values)
         self.names = {""}
         self.version = 0.0
+        self.unknown: list[Element] = []
 
     def read(self, root: Element) -> None:
         """Read the whole document."""
@@ -96,16 +100,12 @@ class _SdfReader:
         )
         if not 4 <= self.version <= 12:
             self.problems.add(root.place, got=f"version {shown(version)}", expected="1.4 to 1.12")
-        models = list(root.find_all("model"))
-        for other in root.children:
-            if other.tag != "model":
-                self.problems.add(
-                    other.place, f"<{other.tag}> cannot be read: expected one <model>", unsupported=True
-                )
-        if len(models) != 1 and len(models) == len(root.children):
-            self.problems.add(root.place, got=f"{len(models)} models", expected="one <model> in <sdf>")
         self.problems.refuse_if_any()
-        self._model(models[0])
+        model, unknown = only_model(root, self.problems, self.report)
+        self.unknown += unknown
+        self._model(model)
+        for element in self.unknown:
+            read_unknown(element, self.draft, self.values, self.report, _known_in(element))
 
     def finish(self, limits: Limits) -> Mechanism:
         """The mechanism of what was read."""
@@ -143,6 +143,7 @@ class _SdfReader:
         reader = SdfJoints(self.frames, self.draft, self.values, self.report, self.version)
         for joint in joints:
             reader.read(joint)
+        self.unknown += reader.unknown
         for element in model.children:
             self._other(element)
         self._choose_ground()
@@ -163,12 +164,7 @@ class _SdfReader:
             if part.tag in _LINK_PARTS:
                 self.report.ignored(part.tag, element.name, "shapes, masses and sensors are not read")
             elif part.tag != "pose":
-                self.problems.add(
-                    part.place,
-                    f"<{part.tag}> is not understood in <link>",
-                    name=part.tag,
-                    choices=_LINK_PARTS,
-                )
+                self.unknown.append(part)
 
     def _keep_frame(self, element: Element) -> None:
         link, pose = self.frames.link_of(element.name), self.frames.in_link(element.name)
@@ -183,14 +179,14 @@ class _SdfReader:
             self.report.ignored(element.tag, element.name, _MODEL_PARTS[element.tag])
         elif element.tag.startswith("drake:"):
             read_constraint(element, self.frames, self.draft, self.values, self.report)
-        else:
+        elif element.tag in ("model", "include"):
             self.problems.add(
                 element.place,
-                f"<{element.tag}> cannot be read in <model>; it may hold links, joints or loops",
-                name=element.tag,
-                choices=("link", "joint", "frame", *_MODEL_PARTS),
-                unsupported=element.tag in ("model", "include"),
+                f"<{element.tag}> cannot be read in <model>: it holds links and joints of its own",
+                unsupported=True,
             )
+        else:
+            self.unknown.append(element)
 
     def _choose_ground(self) -> None:
         if WORLD in self.draft.links or not self.draft.links:
@@ -204,3 +200,10 @@ class _SdfReader:
                 f"no joint leads to the world: {roots[0]} is taken for the ground ({', '.join(roots[1:])} "
                 "are children of no joint either)"
             )
+
+
+def _known_in(element: Element) -> Iterable[str]:
+    """What could stand in the place of an element that nobody knows."""
+    around = element.parent.tag if element.parent is not None else ""
+    known = {"model": ("link", "joint", "frame", *_MODEL_PARTS), "link": ("pose", *_LINK_PARTS)}
+    return known.get(around, KNOWN_IN_JOINTS.get(around, ("model",)))

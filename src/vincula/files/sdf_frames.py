@@ -50,10 +50,11 @@ class SdfFrames:
         self._poses: dict[str, Pose] = {MODEL: Pose.identity(3)}
 
     def add_model(self, model: Element, canonical_link: str) -> None:
-        """The model's own frame; its `<pose>` places it in the world."""
+        """The model's own frame; its `<pose>` places it, or its placement frame, in the world."""
         raw, _ = self.pose_of(model)
+        placed = model.attributes.get("placement_frame", "") or MODEL
         self._frames[MODEL] = _Frame(Pose.identity(3), "", canonical_link, model.place)
-        self._frames[WORLD] = _Frame(raw.inverse(), MODEL, WORLD, model.place)
+        self._frames[WORLD] = _Frame(raw.inverse(), placed, WORLD, model.place)
         self._links.add(WORLD)
 
     def add_drawn(self, poses: Mapping[str, Pose], root: str) -> None:

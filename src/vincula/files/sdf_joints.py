@@ -43,6 +43,24 @@ _READ: Final = (
     "parent", "child", "pose", "axis", "axis2", "thread_pitch", "screw_thread_pitch", "drake:mimic",
 )  # fmt: skip
 
+_AXIS_PARTS: Final = {
+    "dynamics": "friction, damping and springs play no part in kinematics and statics",
+    "initial_position": "every joint value is zero in the drawn pose",
+}
+_READ_IN_AXIS: Final = ("xyz", "limit", "mimic", "use_parent_model_frame")
+_LIMIT_PARTS: Final = {
+    "stiffness": "simulator settings",
+    "dissipation": "simulator settings",
+    "drake:acceleration": "limits of acceleration are not used",
+}
+_READ_IN_LIMIT: Final = ("lower", "upper", "velocity", "effort")
+KNOWN_IN_JOINTS: Final = {
+    "joint": (*_READ, *_JOINT_PARTS),
+    **dict.fromkeys(("axis", "axis2"), (*_READ_IN_AXIS, *_AXIS_PARTS)),
+    "limit": (*_READ_IN_LIMIT, *_LIMIT_PARTS),
+}
+"""Elements that are understood in a joint, its axes and their limits."""
+
 
 def end_of(joint: Element, tag: str, values: XmlValues) -> str:
     """The text of `<parent>` or `<child>`; empty after a problem."""
@@ -63,6 +81,9 @@ class SdfJoints:
         report: Where the joints are recorded.
         version: 7 for SDF 1.7.
         closing: True where the joints close loops of a tree that is known already (Gazebo in URDF).
+
+    Attributes:
+        unknown: Elements in joints that nobody knows.
     """
 
     def __init__(
@@ -77,6 +98,7 @@ class SdfJoints:
     ) -> None:
         self.frames, self.draft, self.values, self.report = frames, draft, values, report
         self.version, self.closing = version, closing
+        self.unknown: list[Element] = []
 
     def read(self, element: Element) -> None:
         """Add one `<joint>`."""
@@ -84,10 +106,7 @@ class SdfJoints:
         if written not in TYPES:
             self._refuse_type(element, written)
             return
-        self.values.only(element, (*_READ, *_JOINT_PARTS))
-        for part in element.children:
-            if part.tag in _JOINT_PARTS:
-                self.report.ignored(part.tag, element.name, _JOINT_PARTS[part.tag])
+        self._record_parts(element)
         parent, child = (end_of(element, tag, self.values) for tag in ("parent", "child"))
         for end, tag in ((parent, "parent"), (child, "child")):
             if end and end not in self.frames.names:
@@ -114,6 +133,18 @@ class SdfJoints:
         )  # fmt: skip
         self.report.used("joint", element.name, TYPES[written])
         self._mimic(element)
+
+    def _record_parts(self, joint: Element) -> None:
+        """Record what is not read in a joint, its axes and their limits."""
+        axes = [*joint.find_all("axis"), *joint.find_all("axis2")]
+        limits = [limit for axis in axes for limit in axis.find_all("limit")]
+        reasons = _JOINT_PARTS | _AXIS_PARTS | _LIMIT_PARTS
+        for around in (joint, *axes, *limits):
+            for part in around.children:
+                if part.tag not in KNOWN_IN_JOINTS[around.tag]:
+                    self.unknown.append(part)
+                elif part.tag in reasons:
+                    self.report.ignored(part.tag, joint.name, reasons[part.tag])
 
     def _refuse_type(self, element: Element, written: str) -> None:
         if written == "gearbox":

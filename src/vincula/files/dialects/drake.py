@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from vincula.files.dialects.closing import close_loop, free_name
+from vincula.files.dialects.unknown import suspicion
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, DraftJoint, RobotDraft
@@ -71,6 +72,8 @@ def read_constraint(
         _between_points(element, kind, frames, draft, values, report)
     elif kind == "joint":
         _planar_joint(element, frames, draft, values, report)
+    elif not suspicion(element, draft):
+        report.ignored(element.tag, element.name, "not known; it says nothing about links and joints")
     else:
         values.problems.add(
             element.place, f"<{element.tag}> cannot be represented", name=element.tag,

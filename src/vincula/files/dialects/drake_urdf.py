@@ -13,6 +13,7 @@ import numpy as np
 
 from vincula.files.dialects.closing import close_loop, link_named, only_child
 from vincula.files.dialects.drake import IGNORED, SPRINGS, UNSUPPORTED, add_rod, has_stiffness
+from vincula.files.dialects.unknown import suspicion
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint
@@ -47,6 +48,8 @@ def read_drake(element: Element, draft: RobotDraft, values: XmlValues, report: L
             close_loop(element, draft, report, "fixed", (ends[0], ends[1]), rows_only=True)
     elif kind == "frame":
         read_frame(element, draft, values, report)
+    elif not suspicion(element, draft):
+        report.ignored(element.tag, element.name, "not known; it says nothing about links and joints")
     else:
         values.problems.add(
             element.place, f"<{element.tag}> cannot be represented", name=element.tag,

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
+from vincula.files.dialects.unknown import read_unknown
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD
 from vincula.files.sdf_frames import SdfFrames
-from vincula.files.sdf_joints import SdfJoints, end_of
+from vincula.files.sdf_joints import KNOWN_IN_JOINTS, SdfJoints, end_of
 from vincula.files.xmltree import Element
 from vincula.files.xmlvalues import XmlValues
 from vincula.spatial.poses import Pose
@@ -63,6 +64,9 @@ def _loop(element: Element, draft: RobotDraft, values: XmlValues, report: LoadRe
         frames = SdfFrames(values.problems, values)
         frames.add_drawn(poses, root)
         frames.add_joint(element, name, ends[1])
-        SdfJoints(frames, draft, values, report, _VERSION, closing=True).read(element)
+        reader = SdfJoints(frames, draft, values, report, _VERSION, closing=True)
+        reader.read(element)
+        for part in reader.unknown:
+            read_unknown(part, draft, values, report, KNOWN_IN_JOINTS["joint"])
 
     draft.when_placed.append(place)
