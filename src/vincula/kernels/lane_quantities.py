@@ -220,6 +220,7 @@ def _of_index(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
     chosen = {"translation": slice(0, s), "rotation": slice(s, None), "all": slice(None)}[quantity.on]
     roots = listing.roots[chosen]
     index = _INDEX[quantity.part]
+    from vincula.kernels.semi_axes import singular_values  # numba is there: this is for lanes
 
     def of_all(raw: RawLanes, out: Block) -> None:
         out[:] = index(_padded(np.sqrt(listing.values(raw)), len(roots)))
@@ -229,7 +230,7 @@ def _of_index(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
         axes = sides * np.sqrt(listing.values(raw))[:, :, None]
         certain = raw.certain if raw.certain.all() else raw.certain & np.isfinite(axes).all(axis=(1, 2))
         found = np.full((len(axes), min(axes.shape[1:])), np.nan)
-        found[certain] = np.linalg.svd(axes[certain], compute_uv=False)
+        found[certain] = singular_values(axes[certain])
         out[:] = index(_padded(found, len(roots)))
 
     return (of_all, 0) if quantity.on == "all" else (of_part, listing.want)
