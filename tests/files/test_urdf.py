@@ -200,6 +200,40 @@ def test_gepetto_words_in_capitals_fixed_joints_and_parts_of_names(tmp_path: Pat
         assert robot.active == ("mot_a_left", "mot_b_left")
 
 
+def test_gepetto_universal_joints_about_named_axes(tmp_path: Path) -> None:
+    text = "name_mot: [mot_a_left]\njoint_name: [to_c]\njoint_type: [UJOINT_ZY]\n"
+    robot = side_file_read(tmp_path, text)
+    turned = robot.body_poses(robot.configuration({"to_c": (0.3, 0.4)}))["c"].rotation
+    c, s = np.cos, np.sin
+    about_z = np.array([[c(0.3), -s(0.3), 0], [s(0.3), c(0.3), 0], [0, 0, 1]])
+    about_y = np.array([[c(0.4), 0, s(0.4)], [0, 1, 0], [-s(0.4), 0, c(0.4)]])
+    assert turned == pytest.approx(about_z @ about_y, abs=1e-15)
+
+
+def test_older_gepetto_files_name_parts_of_names(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(
+        SERIAL.format('<fixed_frame/>').replace('<fixed_frame/>', "".join(
+            f'<link name="{name}"/><joint name="{name}_fixed" type="fixed"><parent link="{link}"/>'
+            f'<child link="{name}"/></joint>'
+            for name, link in (("fermeture1_A", "a"), ("fermeture1_B", "c"))
+        )),
+        encoding="utf-8",
+    )  # fmt: skip
+    text = "name_mot: mot\nrotule_name: to_\nname_closedloop: fermeture\nclosed_loop_number: {}\ntype: {}\n"
+    for kind, closure in (("6D", "fixed"), ("3D", "spherical")):
+        (tmp_path / "arm.yaml").write_text(text.format(1, kind) + "Lidmot: [0, 1]\n", encoding="utf-8")
+        robot, report = load_with_report(tmp_path / "arm.urdf")
+        assert robot.joint["loop:fermeture1_A-fermeture1_B"].type == closure
+        assert robot.joint["to_c"].type == "spherical"
+        assert robot.active == ("mot_a_left", "mot_b_left")
+        assert {e.kind: e.fate for e in report.entries if e.name in ("", "to_c")} == {
+            "joint": "repaired", "Lidmot": "ignored"
+        }  # fmt: skip
+    (tmp_path / "arm.yaml").write_text(text.format(2, "6D"), encoding="utf-8")
+    with pytest.raises(vc.FileError, match=r"arm.yaml:3:.*got 1 pairs"):
+        vc.load(tmp_path / "arm.urdf")
+
+
 def test_older_files_of_urdf_plus_say_constraint(tmp_path: Path) -> None:
     ends = (
         '<predecessor link="c"><origin xyz="1 0 0"/></predecessor>'

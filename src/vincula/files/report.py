@@ -68,7 +68,10 @@ class LoadReport:
         self.entries.append(Entry("ignored", kind, name, reason, count))
 
     def repaired(self, kind: str, name: str = "", detail: str = "", count: int = 1) -> None:
-        """Record an element that was used after a change."""
+        """Record an element that was used after a change; instead of a record that it was used as it is."""
+        same = [e for e in self.entries if name and (e.fate, e.kind, e.name) == ("used", kind, name)]
+        if same:
+            self.entries.remove(same[0])
         self.entries.append(Entry("repaired", kind, name, detail, count))
 
     def note(self, text: str) -> None:

@@ -1,9 +1,14 @@
 """Gepetto side files: `robot.yaml` beside `robot.urdf`, with the loops and the motors.
 
 `closed_loop` lists pairs of frames that coincide, `type` how (6d: position and orientation, 3d:
-position; in either case of letters), `name_mot` the joints with motors, `joint_name` and `joint_type`
-joints of another type than the URDF file says: SPHERICAL, CARDAN (about x, then about y of the joint's
-frame, whatever its axis says) and FIXED.  A frame is a link, or a joint, which stands for its child link.
+position; in either case of letters; one word is for all), `name_mot` the joints with motors, `joint_name`
+and `joint_type` joints of another type than the URDF file says: SPHERICAL, CARDAN (about x, then about y of
+the joint's frame, whatever its axis says), UJOINT_ZY (about z, then about y, and so on) and FIXED.  A frame
+is a link, or a joint, which stands for its child link.
+
+Older files write `name_closedloop: fermeture` for the pairs of frames fermeture1_A and fermeture1_B,
+fermeture2_A ...; `rotule_name: to_rotule` for all joints that are spherical, whose names contain it; and
+`Lidmot`, `Lidvmot`, places of the motors in vectors of Pinocchio, which are not used.
 
 Source: `completeRobotLoader` and `ActuationModel` of Gepetto/example-parallel-robots.  They take a name in
 `name_mot` for every joint whose name contains it; here that is done only for a name that no joint has,
@@ -31,14 +36,21 @@ from vincula.spatial.poses import Pose
 if TYPE_CHECKING:
     from vincula.files.robot_graph import RobotDraft
 
-KEYS: Final = ("closed_loop", "type", "name_mot", "joint_name", "joint_type")
+_NUMBERS: Final = ("Lidmot", "Lidvmot")
+KEYS: Final = (
+    "closed_loop", "type", "name_mot", "joint_name", "joint_type", "rotule_name", "name_closedloop",
+    "closed_loop_number", *_NUMBERS,
+)  # fmt: skip
 LOOPS: Final = {"6d": "fixed", "3d": "spherical"}
 """Kinds of loops, and the joint that stands for them; both give rows only, as in Pinocchio."""
-JOINTS: Final = {"SPHERICAL": "spherical", "CARDAN": "universal", "FIXED": "fixed"}
+_AXES: Final = dict(zip("XYZ", np.eye(3), strict=True))
+_TWO_AXES: Final = {"CARDAN": "XY"} | {f"UJOINT_{a}{b}": a + b for a in "XYZ" for b in "XYZ" if a != b}
+JOINTS: Final = {"SPHERICAL": "spherical", "FIXED": "fixed"} | dict.fromkeys(_TWO_AXES, "universal")
 """Joint types that a side file may put in place of the URDF file's."""
 
-_X, _Y = np.eye(3)[:2]
-_SIGN: Final = re.compile(r"^\s*closed_loop\s*:", re.MULTILINE)
+_SIGN: Final = re.compile(
+    r"^(?:closed_loop|name_closedloop|name_mot|joint_type|rotule_name)\s*:|^\s*closed_loop\s*:", re.MULTILINE
+)
 
 
 class GepettoFile:
@@ -54,7 +66,7 @@ class GepettoFile:
 
     @staticmethod
     def recognises(source: Source) -> bool:
-        """Whether a text looks like a side file: it has a key `closed_loop`."""
+        """Whether a text looks like a side file: it has one of its own keys."""
         return _SIGN.search(source.text) is not None
 
     def read(self, draft: RobotDraft, _values: XmlValues, report: LoadReport) -> None:
@@ -86,16 +98,23 @@ class _SideFileReader:
                     name=str(key),
                     choices=KEYS,
                 )
-        lists = {key: self._list(tree, key) for key in KEYS}
-        self._retype(lists["joint_name"], lists["joint_type"])
-        self._loops(lists["closed_loop"], lists["type"])
-        self._motors(lists["name_mot"], "name_mot" in tree)
+        self._balls(tree.get("rotule_name"))
+        self._retype(self._list(tree, "joint_name"), self._list(tree, "joint_type"))
+        pairs = self._list(tree, "closed_loop") or self._pairs(tree)
+        self._loops(pairs, self._list(tree, "type", alone=len(pairs)))
+        self._motors(self._list(tree, "name_mot", alone=1), "name_mot" in tree)
+        for key in _NUMBERS:
+            if key in tree:
+                self._report.ignored(key, "", "the motors are those of name_mot")
         self._problems.refuse_if_any()
 
-    def _list(self, tree: dict[str, Any], key: str) -> list[Any]:
+    def _list(self, tree: dict[str, Any], key: str, *, alone: int | None = None) -> list[Any]:
+        """The list of a key; a text alone stands for a list of so many like it."""
         value = tree.get(key)
         if value is None:
             return []
+        if isinstance(value, str) and alone is not None:
+            return [value] * alone
         if isinstance(value, list):
             return value
         self._add((key,), got=form_of(value), expected="a list")
@@ -110,6 +129,32 @@ class _SideFileReader:
             return self._frames[name]
         self._add(location, got=f"frame {form_of(name)}", name=str(name), choices=self._frames)
         return ""
+
+    def _pairs(self, tree: dict[str, Any]) -> list[Any]:
+        """Pairs of frames by the beginning of their names, in the older way."""
+        word = tree.get("name_closedloop")
+        if word is None:
+            return []
+        if not isinstance(word, str) or not word:
+            self._add(("name_closedloop",), got=form_of(word), expected="the beginning of names of frames")
+            return []
+        found: list[Any] = []
+        while all((frame := f"{word}{len(found) + 1}_{end}") in self._frames for end in "AB"):
+            found.append([f"{frame[:-1]}A", frame])
+        wanted = tree.get("closed_loop_number", -1)
+        if not found or (wanted != -1 and wanted != len(found)):
+            names = f"frames {shown(word + '1_A')} and {shown(word + '1_B')}, and so on"
+            self._add(("name_closedloop",), got=f"{len(found)} pairs of such frames", expected=names)
+        return found
+
+    def _balls(self, word: object) -> None:
+        """Make all joints spherical whose names contain a word."""
+        if word is None:
+            return
+        names = [j.name for j in self._draft.joints if isinstance(word, str) and word and word in j.name]
+        if not names:
+            self._add(("rotule_name",), got=form_of(word), expected="a part of the name of a joint")
+        self._retype(names, ["SPHERICAL"] * len(names))
 
     def _loops(self, pairs: list[Any], kinds: list[Any]) -> None:
         if len(kinds) != len(pairs):
@@ -156,9 +201,9 @@ class _SideFileReader:
             else:
                 at = joints[name]
                 old = self._draft.joints[at]
-                axes = (_X, _Y) if kind == "CARDAN" else (None, None)
+                one, other = (_AXES.get(letter) for letter in _TWO_AXES.get(kind, "--"))
                 self._draft.joints[at] = replace(
-                    old, type=JOINTS[kind], axis=axes[0], second_axis=axes[1], limits=()
+                    old, type=JOINTS[kind], axis=one, second_axis=other, limits=()
                 )
                 self._report.repaired("joint", name, f"{JOINTS[kind]}, as the side file says, not {old.type}")
 
