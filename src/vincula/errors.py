@@ -8,11 +8,23 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
-from typing import Literal
+from typing import Final, Literal
+
+LONGEST_MESSAGE: Final = 20_000
+"""Characters of a message that are told; what stands in the middle of a longer one is left out."""
+LONGEST_NAME: Final = 200
+"""Characters of a name given by the caller that are told, and compared with the names that exist."""
 
 
 class VinculaError(Exception):
-    """Base class of every error that vincula raises on purpose."""
+    """Base class of every error that vincula raises on purpose.
+
+    Messages are printable whatever names, files and other libraries put into them: terminals and logs
+    are safe from control characters, and from texts without end.
+    """
+
+    def __init__(self, message: str = "", *more: object) -> None:
+        super().__init__(printable(message) if isinstance(message, str) else message, *more)
 
 
 class ModelError(VinculaError, ValueError):
@@ -82,9 +94,11 @@ class UnknownNameError(ModelError):
 
     def __init__(self, kind: str, name: str, choices: Iterable[str]) -> None:
         self.kind, self.name, self.choices = kind, name, tuple(choices)
-        near = difflib.get_close_matches(name, self.choices, n=3) if isinstance(name, str) else []
+        told = name[:LONGEST_NAME] if isinstance(name, str) else name
+        near = difflib.get_close_matches(told, self.choices, n=3) if isinstance(told, str) else []
         hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else "."
-        super().__init__(f"no {kind} is named {name!r}{hint} Known: {listing(self.choices)}")
+        cut = "..." if told != name else ""
+        super().__init__(f"no {kind} is named {told!r}{cut}{hint} Known: {listing(self.choices)}")
 
 
 class DuplicateNameError(ModelError):
@@ -126,8 +140,8 @@ class FileError(VinculaError):
     """
 
     def __init__(self, message: str, problems: Sequence[str] = ()) -> None:
-        self.problems = tuple(problems) or (message,)
         super().__init__(message)
+        self.problems = tuple(map(printable, problems)) or (str(self),)
 
 
 class UnsupportedFeatureError(FileError):
@@ -186,6 +200,19 @@ class RankAmbiguityWarning(UserWarning):
 
 class MixedUnitsWarning(UserWarning):
     """Unit weights over metres and radians: the result depends on the unit of length."""
+
+
+def printable(text: str) -> str:
+    """A message with what a terminal cannot show escaped, cut in the middle when it is very long."""
+    if len(text) > LONGEST_MESSAGE:
+        half = LONGEST_MESSAGE // 2
+        left_out = len(text) - 2 * half
+        text = f"{text[:half]} ... ({left_out} characters left out) ... {text[-half:]}"
+    if text.replace("\n", "").isprintable():
+        return text
+    return "".join(
+        c if c == "\n" or c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )
 
 
 def _plural(kind: str) -> str:
