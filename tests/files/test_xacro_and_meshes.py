@@ -41,6 +41,18 @@ def xacro() -> None:
     pytest.importorskip("xacro")
 
 
+@pytest.mark.parametrize("comment", ["${15 * deg}", "$(find arm)", "<xacro:piece k='1'/>"])
+def test_what_xacro_has_expanded_is_read_as_it_is(
+    comment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It keeps the namespace, and the comments of the macros; without the extra it must be read too."""
+    monkeypatch.setitem(sys.modules, "xacro", None)
+    text = f'{HEAD}<link name="base"/><!-- upper="{comment}" -->\n<!-- made from arm.xacro --></robot>'
+    robot, report = load_with_report(written(tmp_path, text, "arm.urdf"))
+    assert robot.bodies == ()
+    assert report.notes == []
+
+
 @pytest.mark.usefixtures("xacro")
 def test_a_xacro_is_expanded_and_read(tmp_path: Path) -> None:
     robot, report = load_with_report(written(tmp_path, ARM))

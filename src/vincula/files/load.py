@@ -26,6 +26,7 @@ EXAMPLE: Final = "example:"
 """What stands before the name of an example of the catalog."""
 
 _PROLOGUE: Final = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^<>]*>)", re.DOTALL)
+_COMMENT: Final = re.compile(r"<!--.*?-->", re.DOTALL)
 _ROOT: Final = re.compile(r"\s*<([A-Za-z_][\w.:-]*)([^<>]*)")
 
 
@@ -255,8 +256,13 @@ def is_xacro(source: Source) -> bool:
     root = _first_element(source.text)
     if root is None:
         return False
-    uses = "<xacro:" in source.text or "${" in source.text or "$(" in source.text
-    return root[1].startswith("xacro:") or ("xacro" in root[2] and uses)
+    if root[1].startswith("xacro:"):
+        return True
+    if "xacro" not in root[2]:
+        return False
+    # What xacro has expanded keeps the namespace, and the comments of what it was made from.
+    written = _COMMENT.sub("", source.text)
+    return any(sign in written for sign in ("<xacro:", "${", "$("))
 
 
 def xml_root(source: Source) -> str:
