@@ -19,6 +19,7 @@ Event = Any
 """An event of ruamel.yaml, whose base class declares none of its fields."""
 
 _TRUTH: Final = {word: word[0] in "tT" for word in ("true", "True", "TRUE", "false", "False", "FALSE")}
+_WORD: Final = re.compile(r"[^\s,\[\]{}:\"'#]+")
 _NOTHING: Final = ("", "~", "null", "Null", "NULL")
 
 
@@ -37,7 +38,8 @@ def read_yaml(source: Source, limits: Limits = DEFAULT_LIMITS) -> Document:
 
 def _refuse_endless_words(source: Source, limits: Limits) -> None:
     """Refuse a million digits before the scanner walks through them."""
-    found = re.search(rf"[^\s,\[\]{{}}:\"'#]{{{limits.attribute_characters + 1}}}", source.text)
+    words = _WORD.finditer(source.text)
+    found = next((word for word in words if word.end() - word.start() > limits.attribute_characters), None)
     if found:
         line = source.text.count("\n", 0, found.start()) + 1
         column = found.start() - source.text.rfind("\n", 0, found.start())
