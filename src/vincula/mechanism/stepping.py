@@ -162,7 +162,8 @@ class Stepper:
             if landing:
                 predicted = TrackPoint(predicted.state, target, predicted.equations)
             point, sizes = track.corrected(predicted, landing=landing)
-            if _is_safe(point, sizes, length):
+            # A curved step may go beyond where it ends: what is held would be put back there without closing.
+            if point.travelled <= target and _is_safe(point, sizes, length):
                 tangent, _ = track.tangent(point, here.tangent)
                 straight = float(tangent @ here.tangent)
                 if straight > STRAIGHT:

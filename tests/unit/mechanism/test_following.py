@@ -281,3 +281,25 @@ def test_two_motors_that_lose_authority_at_once_are_both_named() -> None:
     poses = mechanism.body_poses(path.end)
     height = poses["plate"].apply(np.array([0.0, 2.0]))[1]
     assert height == pytest.approx(2.0 * math.sqrt(2.0), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal"),
+    [
+        ([-0.8323878, -2.43794786, -2.58294663, 6.04124083, -0.18795853], [-0.8323878, 0.67128048]),
+        ([-0.61757804, -2.42180104, -3.27276035, 7.35933699, -1.04719755], [-0.61757804, -0.18795853]),
+    ],
+)
+def test_the_end_is_closed_also_where_the_last_step_curves_beyond_it(
+    start: list[float], goal: list[float]
+) -> None:
+    """A step whose correction passed the goal was taken for the end, with the motors put back to it."""
+    linkage = vc.load("example:five-bar").with_active(["o1", "o5"])
+    began = linkage.close(linkage.home.from_flat(np.array(start)), attempts=1)
+    motors = dict(zip(("o1", "o5"), goal, strict=True))
+    passing = ("platform free", "motors without authority")
+    path = linkage.follow([motors], start=began, limits=False, through=passing)
+    assert path.complete
+    for point in path.points:
+        assert max(residual.gap for residual in linkage.residuals(point.configuration)) < 1e-12
+    assert [path.end[name][0] for name in motors] == goal
