@@ -1,4 +1,7 @@
-"""Where the closing of every chunk starts, fixed before the run: a coarse path followed once, in order."""
+"""Where the closing of every chunk starts, fixed before the run: a coarse path followed once, in order.
+
+In lanes where they carry a closed configuration along its branch, else by `Mechanism.follow`.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +30,7 @@ def coarse_path(sweep: Sweep, last: Vector | None, chunks: range) -> Iterator[tu
     From the one before it the path to the next first point is followed, through singularities where it
     goes on beyond them.  Where it ends early, or the geometry changes as well, the loops are closed at the
     first point from there; where that fails, the chunk starts from the last configuration there was.
+    Each is found by itself, so that it does not matter which are asked for together.
 
     Args:
         sweep: The sweep.
@@ -60,6 +64,9 @@ def _next(
 ) -> Configuration:
     if parameters and sweep.compiled.build is not None:
         return _closed(sweep.compiled.build(**parameters), sweep, row, current) or current
+    reached = _in_lanes(sweep, row, current)
+    if reached is not None:
+        return reached
     try:
         path = _followed(mechanism, sweep, row, current)
     except VinculaError:
@@ -67,6 +74,15 @@ def _next(
     if path.complete:
         return path.end
     return _closed(mechanism, sweep, row, path.end) or _closed(mechanism, sweep, row, current) or path.end
+
+
+def _in_lanes(sweep: Sweep, row: Vector, current: Configuration) -> Configuration | None:
+    """The configuration on the branch of the present one; None where lanes do not get there."""
+    closing = sweep.closing
+    if isinstance(closing, str) or not closing.starts_at(current):
+        return None
+    found = closing.run(row[np.newaxis], current, 1, 1)
+    return sweep.mechanism.home.from_flat(found.values[0]) if found.closed[0] else None
 
 
 def _followed(mechanism: Mechanism, sweep: Sweep, row: Vector, current: Configuration) -> Path:

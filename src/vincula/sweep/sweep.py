@@ -15,6 +15,7 @@ from vincula import __version__
 from vincula.errors import ModelError
 from vincula.kernels.compiled import CompiledMechanism, compile_mechanism
 from vincula.kernels.inputs import Given
+from vincula.kernels.lane_closing import lane_closing
 from vincula.kernels.quantities import Quantity, chosen
 from vincula.mechanism.mechanism import Mechanism
 from vincula.sweep.chunks import Chunking
@@ -30,6 +31,7 @@ from vincula.weights import Weights
 if TYPE_CHECKING:
     import xarray
 
+    from vincula.kernels.lanes.closing import LaneClosing
     from vincula.sweep.dataset import SweepData
     from vincula.sweep.progress import Tell
 
@@ -111,6 +113,11 @@ class Sweep:
         """What all chunks have in common."""
         scattered = isinstance(self.points, (RandomPoints, LowDiscrepancyPoints))
         return Work(self.compiled, self.inputs, self._asked, scattered)
+
+    @cached_property
+    def closing(self) -> LaneClosing | str:
+        """The closing of its points in lanes; or why they are closed one by one."""
+        return lane_closing(self.mechanism, self.inputs.given)
 
     @cached_property
     def layout(self) -> Layout:
