@@ -25,6 +25,8 @@ CRITERIA: Final = {
     "smallest-singular-value": "shortest semi-axis of the kinematic ellipsoid",
 }
 """What designs can be ranked by; of all of them more is better."""
+SAME_DIGITS: Final = 9
+"""Numbers that agree to so many digits do not decide an order."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,8 +49,9 @@ def ranked_designs(
 ) -> tuple[RankedDesign, ...]:
     """Designs from best to worst; equal ones stay in the order given.
 
-    Designs that leave the member indeterminate come last: with motors locked it still moves, and no
-    efficiency makes up for that.  Before them come those for which the number does not exist.
+    Designs that leave the member indeterminate come last, those that leave fewer motions first: with motors
+    locked it still moves, and no efficiency makes up for that.  Before them come those for which the number
+    does not exist.
 
     Args:
         analyses: The designs.
@@ -64,16 +67,21 @@ def ranked_designs(
     return tuple(sorted((_judged(one, criterion, on) for one in analyses), key=_place))
 
 
-def place_in_ranking(index: float | None, indeterminacy: int) -> tuple[int, float]:
+def place_in_ranking(index: float | None, indeterminacy: int) -> tuple[int, int, float]:
     """Sorting key of a design: smaller is better; the one order in which designs are ranked.
+
+    Designs that hold the member, by their number; those without the number; then by how many ways the member
+    is left to move, fewest first.  Numbers that differ by rounding count as equal: mirror images stay in the
+    order given, on every machine.
 
     Args:
         index: What it is ranked by, more being better; None where it has no such number.
         indeterminacy: Ways in which the member moves with all motors locked.
     """
+    size = 0.0 if index is None else -float(f"{index:.{SAME_DIGITS}g}")
     if indeterminacy:
-        return 2, -(index or 0.0)
-    return (1, 0.0) if index is None else (0, -index)
+        return 2, indeterminacy, size
+    return (1, 0, 0.0) if index is None else (0, 0, size)
 
 
 def indeterminate_words(count: int) -> str:
@@ -111,7 +119,7 @@ def criterion_value(analysis: Analysis, criterion: str, on: Part = "all") -> flo
     return function(analysis.kinematic, on)
 
 
-def _place(design: RankedDesign) -> tuple[int, float]:
+def _place(design: RankedDesign) -> tuple[int, int, float]:
     return place_in_ranking(design.index, design.analysis.ledger.summary.indeterminacy)
 
 

@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from vincula.design.placement import Placement
     from vincula.sweep.sweep import Sweep
 
-SHOWN = 40
-"""Choices that the table shows when nothing is said."""
-
 choosing_options = together(
     click.option(
         "--motors",
@@ -83,10 +80,9 @@ ranking_options = together(
     ),
     click.option(
         "--front",
-        default="kinematic,active-force,cost",
-        show_default=True,
         metavar="A,B",
-        help="Criteria of the Pareto front: those of --rank-by, and cost and motors (less is better).",
+        help="Criteria of the Pareto front: those of --rank-by, and cost and motors (less is better). "
+        "By default the one of --rank-by, active-force and cost.",
     ),
     click.option("--seed", type=int, default=0, show_default=True, help="Seed of a search."),
     click.option(
@@ -107,10 +103,8 @@ ranking_options = together(
 @click.option(
     "--show",
     type=click.IntRange(0),
-    default=SHOWN,
-    show_default=True,
     metavar="N",
-    help="Choices in the table; 0 shows all. --json always holds all.",
+    help="Choices in the table and reasons in words (default 40 and 12); 0 shows all. --json holds all.",
 )
 @click.option("-o", "--output", metavar="FIGURE", help="Figure to write: .svg, .png or .pdf.")
 @click.option("--width", type=click.FloatRange(1.0, 100.0), metavar="INCH", help="Width of the figure.")
@@ -127,11 +121,11 @@ def place_command(
     over: str | None,
     rank_by: str,
     on: Part,
-    front: str,
+    front: str | None,
     seed: int,
     budget: int | None,
     weights: str | None,
-    show: int,
+    show: int | None,
     output: str | None,
     width: float | None,
     strict: bool,
@@ -157,15 +151,9 @@ def place_command(
         found = _placed(
             subject, sizes, over,
             forbid=forbid or (), require=require or (), cost=cost, rank_by=rank_by, on=on,
-            front=[name.strip() for name in front.split(",")], seed=seed, budget=budget or BUDGET,
-            progress=_progress(),
+            front=None if front is None else [name.strip() for name in front.split(",")],
+            seed=seed, budget=budget or BUDGET, progress=_progress(),
         )  # fmt: skip
-        if output is not None:
-            from vincula.view.placement_figure import plot_placement
-            from vincula.view.plot import save_figure
-
-            save_figure(plot_placement(found, width=width), output)
-            click.echo(f"wrote {output}", err=True)
     tell([mixed_units_advice(found.looked.models[0])] if found.warnings else [])
     if as_json:
         print_json(found.to_dict())
@@ -173,6 +161,12 @@ def place_command(
         from vincula.cli.place_page import page_of
 
         page_of(found, show).show()
+    if output is not None:
+        from vincula.view.placement_figure import plot_placement
+        from vincula.view.plot import save_figure
+
+        save_figure(plot_placement(found, width=width), output)
+        click.echo(f"wrote {output}", err=True)
     ctx.exit(DOUBTFUL if strict and any(choice.doubtful_at for choice in found.choices) else DONE)
 
 

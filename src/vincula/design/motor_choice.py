@@ -137,7 +137,7 @@ class MotorChoice:
         return max(int(getattr(counts, count)) for counts in self.counts)
 
     @property
-    def place(self) -> tuple[int, float]:
+    def place(self) -> tuple[int, int, float]:
         """Sorting key in the ranking of `compare`: smaller is better."""
         return place_in_ranking(self.index, self.largest("indeterminacy"))
 
@@ -153,19 +153,24 @@ class MotorChoice:
 
     @cached_property
     def why(self) -> tuple[str, ...]:
-        """Why it does not control the member, in words: which motion is left, which joints take part.
+        """Why it does not control the member, in words: which motions are left, which joints take part.
 
-        At the first configuration where it fails; empty for a choice that controls the member.
+        At the first configuration where it leaves the most; empty for a choice that controls the member.
         """
         if not self.fails_at:
             return ()
-        return tuple(indeterminate_motions(self.model(self.fails_at[0])))
+        return tuple(indeterminate_motions(self.model(self._loosest)))
+
+    @property
+    def _loosest(self) -> int:
+        """The first configuration where the member is left the most motions."""
+        return max(self.fails_at, key=lambda k: self.counts[k].indeterminacy)
 
     @cached_property
     def explanation(self) -> tuple[str, ...]:
         """What the choice can do where it is worst, in words: verdicts, and its weakest direction."""
         found = self.indices[self.judge.rank_by]
-        at = self.fails_at[0] if self.fails_at else found.at
+        at = self._loosest if self.fails_at else found.at
         analysis = self.analyze(at)
         said = tuple(verdicts(analysis.model))
         weakest = _weakest(analysis, self.judge.rank_by)

@@ -24,6 +24,7 @@ from vincula.errors import ModelError, UnknownNameError, listing
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
 from vincula.model import LinearModel
+from vincula.numerics.blas import one_blas_thread
 from vincula.weights import UNIT, Weights
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ SHOWN: Final = ("kinematic", "active-force", "passive-force")
 """Criteria that every choice is judged by, whatever it is ranked by."""
 LESS_IS_BETTER: Final = ("cost", "motors")
 """Criteria of a Pareto front of which less is better; of all others more is."""
-FRONT: Final = ("kinematic", "active-force", "cost")
-"""Criteria of the Pareto front when nothing is said."""
+BESIDE: Final = ("active-force", "kinematic")
+"""What stands on the Pareto front beside the number that choices are ranked by, when nothing is said."""
 
 Tell = Callable[[int, int], None]
 """Called with the number of choices looked at, and how many there will be at most."""
@@ -57,6 +58,7 @@ class Placement:
         front_criteria: Criteria of the Pareto front.
         front: The choices that control the member everywhere and that no other such choice beats in all
             of these criteria at once, in the order of the ranking.
+        limit: All candidates at once, admissible or not: what no choice among them can surpass.
         seed: Seed of the search; None where every admissible choice was looked at.
         warnings: What the reader of the numbers must know.
     """
@@ -68,6 +70,7 @@ class Placement:
     on: Part
     front_criteria: tuple[str, ...]
     front: tuple[MotorChoice, ...]
+    limit: MotorChoice
     seed: int | None
     warnings: tuple[str, ...]
 
@@ -86,6 +89,14 @@ class Placement:
     def controlling(self) -> tuple[MotorChoice, ...]:
         """The choices that control the member at every configuration, best first."""
         return tuple(choice for choice in self.choices if choice.controls)
+
+    @property
+    def fewest(self) -> int:
+        """Number of motors below which no choice can control the member: its independent motions.
+
+        A locked motor takes away one motion at most.
+        """
+        return max(counts.coordinated + counts.indeterminacy for counts in self.limit.counts)
 
     @property
     def explanation(self) -> tuple[str, ...]:
@@ -133,7 +144,7 @@ def place(
     require: Names = (),
     cost: Mapping[str, float] | None = None,
     weights: Weights | None = None,
-    front: Sequence[str] = FRONT,
+    front: Sequence[str] | None = None,
     seed: int = 0,
     budget: int = BUDGET,
     progress: Tell | None = None,
@@ -142,7 +153,7 @@ def place(
 
     A choice controls the mechanism when its reference member does not move with all motors locked (no
     indeterminacy), at every configuration.  Choices that do come first, the one with the largest worst
-    value of `rank_by` on top: the ranking of `vincula compare`.
+    value of `rank_by` on top; then those that leave it the fewest motions: the ranking of `vincula compare`.
 
     Args:
         source: A mechanism with a reference member, a linear model, or the same mechanism's models at several
@@ -158,7 +169,7 @@ def place(
         weights: Weights; by default those of the mechanism.  Rates and torques by name, so that they fit
             every choice.
         front: Criteria of the Pareto front: those of `rank_by`, and `cost` and `motors` of which less is
-            better.
+            better; None for `rank_by`, the active force (or else the kinematic) index and `cost`.
         seed: Seed of the search, where there are more than 65536 choices.
         budget: Choices that such a search looks at.
         progress: Called with what is done.
@@ -175,6 +186,7 @@ def place(
         MixedUnitsError: An index over metres and radians with weights that nobody chose.
     """
     criteria = _criteria(rank_by, front)
+    chosen = _default_front(rank_by) if front is None else tuple(front)
     if isinstance(source, Mechanism):
         admissible = Admissible.of_mechanism(source, motors, forbid, require, cost)
         looked = _looked(source, admissible, weights, at, over)
@@ -182,7 +194,7 @@ def place(
         looked = _given(source, at, over)
         admissible = Admissible.of_model(looked.models[0], motors, forbid, require, cost)
     judge = Judge(looked.models, None if isinstance(source, Mechanism) else weights, rank_by, criteria, on)
-    return _ranked(admissible, looked, judge, tuple(front), seed, _budget(budget), progress)
+    return _ranked(admissible, looked, judge, chosen, seed, _budget(budget), progress)
 
 
 def _ranked(
@@ -205,20 +217,21 @@ def _ranked(
         found.append(choice)
         if progress is not None:
             progress(len(found), total)
-        group, index = choice.place
-        return float(group), float(choice.largest("indeterminacy")), index
+        return choice.place
 
-    if exhaustive:
-        for size in admissible.sizes:
-            for motors in admissible.of_size(size):
-                look(motors)
-    else:
-        searched(admissible, look, total, seed)
+    with one_blas_thread():
+        limit = judge.judged(admissible.candidates, admissible.cost_of(admissible.candidates))
+        if exhaustive:
+            for size in admissible.sizes:
+                for motors in admissible.of_size(size):
+                    look(motors)
+        else:
+            searched(admissible, look, total, seed)
     ranked = tuple(sorted(found, key=lambda choice: choice.place))
     used = judge.weights or looked.models[0].weights or UNIT
     mixed = mixed_units_message(looked.models[0], used, "twist")
     return Placement(
-        admissible, ranked, looked, judge.rank_by, judge.on, front, _front(ranked, front),
+        admissible, ranked, looked, judge.rank_by, judge.on, front, _front(ranked, front), limit,
         None if exhaustive else seed, (mixed,) if mixed else (),
     )  # fmt: skip
 
@@ -251,11 +264,17 @@ def _given(source: LinearModel | Sequence[LinearModel], at: object, over: object
     return Looked(models, tuple(Configuration({}) for _ in models))
 
 
-def _criteria(rank_by: str, front: Sequence[str]) -> tuple[str, ...]:
+def _default_front(rank_by: str) -> tuple[str, ...]:
+    return rank_by, next(name for name in BESIDE if name != rank_by), "cost"
+
+
+def _criteria(rank_by: str, front: Sequence[str] | None) -> tuple[str, ...]:
     """Everything to compute."""
     if rank_by not in CRITERIA:
         raise UnknownNameError("criterion", rank_by, CRITERIA)
-    if isinstance(front, str) or not front:
+    if front is None:
+        front = ()
+    elif isinstance(front, str) or not front:
         known = listing([*CRITERIA, *LESS_IS_BETTER])
         raise ModelError(f"front is {front!r}: give a list of criteria ({known})")
     for name in front:

@@ -19,6 +19,8 @@ COUNTS = (
     "structural_wrenches", "static_indeterminacy",
 )  # fmt: skip
 """Summary counts of a choice, each the largest over the configurations."""
+LINES = 60
+"""Choices that the text shows; the object holds all."""
 
 
 def as_object(placement: Placement) -> dict[str, Any]:
@@ -44,6 +46,8 @@ def as_object(placement: Placement) -> dict[str, Any]:
         "exhaustive": placement.exhaustive,
         "seed": placement.seed,
         "controlling": len(placement.controlling),
+        "fewest_motors": placement.fewest,
+        "all_candidates_control": placement.limit.controls,
         "explanation": list(placement.explanation),
         "front": {
             "criteria": list(placement.front_criteria),
@@ -92,10 +96,12 @@ def as_text(placement: Placement) -> str:
         "",
     ]
     on_front = {id(choice) for choice in placement.front}
-    for rank, choice in enumerate(placement.choices, start=1):
+    for rank, choice in enumerate(placement.choices[:LINES], start=1):
         index = "-" if choice.index is None else number(choice.index)
         star = "*" if id(choice) in on_front else " "
         because = f"   {choice.reason}" if choice.reason else ""
         lines.append(f"{rank:>5}{star} {index:>10}   {', '.join(choice.motors)}{because}")
+    if len(placement.choices) > LINES:
+        lines.append(f"      {len(placement.choices) - LINES} more behind these")
     lines += ["", *placement.explanation, *(f"warning: {text}" for text in placement.warnings)]
     return "\n".join(lines)
