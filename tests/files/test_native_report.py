@@ -55,6 +55,9 @@ def test_the_report_counts_every_element(tmp_path: Path) -> None:
         "joint": 10,
         "contact": 2,
         "motor": 4,
+        "setting": 2,
+        "lock": 1,
+        "reference": 1,
     }
     assert json.loads(json.dumps(report.to_dict()))["units"] == {"length": "m", "angle": "rad"}
     assert str(report).startswith(str(tmp_path))

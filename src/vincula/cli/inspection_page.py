@@ -22,6 +22,8 @@ MOST_NAMES: Final = 3
 LABELS: Final = 20
 """Columns that the labels of the summary take."""
 
+_CONTENTS: Final = ("elements", "attributes", "values")
+
 Facts = Mapping[str, Any]
 
 
@@ -156,8 +158,24 @@ def _load(page: Page, load: Facts, everything: bool) -> None:
     page.heading("Read from the file", f"format {load['format']}")
     used = [f"{count['used']} {kind}" for kind, count in load["counts"].items() if count["used"]]
     page.facts(
-        [("used", ", ".join(used)), *_reasons(load, everything), *(("note", n) for n in load["notes"])]
+        [
+            ("used", ", ".join(used)),
+            *_reasons(load, everything),
+            *(("note", n) for n in load["notes"]),
+            ("in all", _contents_words(load["contents"])),
+        ]
     )
+
+
+def _contents_words(contents: Facts) -> str:
+    """`157 of 266 elements, 214 of 445 attributes and all 11 values are used; the rest is ignored`."""
+    parts = [
+        f"all {counts['total']} {kind}" if not counts["ignored"] else
+        f"{counts['used'] + counts['repaired']} of {counts['total']} {kind}"
+        for kind, counts in sorted(contents.items(), key=lambda item: _CONTENTS.index(item[0]))
+        if counts["total"]
+    ]  # fmt: skip
+    return f"{', '.join(parts)} used" if parts else ""
 
 
 def _reasons(load: Facts, everything: bool) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from vincula.errors import FileError, MissingExtraError, ModelError, UnsupportedFeatureError
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.mjcf_checks import angle_unit, check_document
+from vincula.files.mjcf_contents import account_document
 from vincula.files.mjcf_digits import typed_precision
 from vincula.files.mjcf_document import Document, read_document
 from vincula.files.mjcf_report import record_elements
@@ -81,6 +82,7 @@ def _mechanism(document: Document, source: Source, report: LoadReport, limits: L
     except ModelError as error:
         raise FileError(f"{source.file}: {error}") from error
     record_elements(document, report)
+    account_document(document, report)
     for warning in warnings:
         report.note(f"MuJoCo: {warning}")
     return mechanism

@@ -27,12 +27,14 @@ class Document:
         file: The file as shown to the user.
         models: Documents of attached models by the `asset/model` element that names them.
         includes: Files that were included, as shown to the user.
+        holders: The include elements, and the root elements of the files in their places.
     """
 
     root: Element
     file: str
     models: list[tuple[Element, Document]] = field(default_factory=list)
     includes: list[str] = field(default_factory=list)
+    holders: list[Element] = field(default_factory=list)
 
     def all_documents(self) -> list[Document]:
         """The document and those of its attached models, inner ones too."""
@@ -117,6 +119,7 @@ class _Reader:
             for inner in holder.children:
                 inner.parent = element
             children.extend(holder.children)
+            document.holders += [child, holder]
         element.children = children
 
     def _open(self, element: Element, source: Source) -> tuple[Source, Path]:

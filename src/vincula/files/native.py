@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vincula.errors import DuplicateNameError, FileError, ModelError, UnknownNameError
+from vincula.files.contents import account_values
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.native_drawing import draw
 from vincula.files.native_names import joint_values
@@ -90,6 +91,7 @@ def read_native(
     document.problems.refuse_if_any()
     report = LoadReport(document.file, f"vincula native, {document.syntax}", units=units)
     record_entries(entry, report)
+    account_values(document.root, report)
     note_oddities(entry, mechanism, base.mechanism if base else None, report)
     if base is not None:
         report.extend(base.report, new_motors=entry.motors is not None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,37 +16,54 @@ from vincula.mechanism.parts import GROUND, ContactPart, Joint
 if TYPE_CHECKING:
     from vincula.files.expressions import Measured
     from vincula.files.report import LoadReport
-    from vincula.files.schema import NativeFile
+    from vincula.files.schema import JointEntry, NativeFile
     from vincula.mechanism.mechanism import Mechanism
 
 _FAR = 300.0
 """A point so many times farther out than the others is probably in another unit."""
 
 
+_SETTINGS = ("vincula", "name", "space", "units", "base", "precision")
+"""Keys of the root that hold no elements."""
+
+
 def record_entries(entry: NativeFile, report: LoadReport) -> None:
     """Record every element of the file; of a native file all are used."""
-    for name in entry.bodies:
-        report.used("body", name)
-    for name in entry.frames:
-        report.used("frame", name)
+    for kind, named in (("body", entry.bodies), ("frame", entry.frames)):
+        for name in named:
+            report.used(kind, name)
     for joint in entry.joints:
         report.used("joint", joint.name, joint.type)
-        for axis in _directions(joint):
-            size = math.hypot(*(number.value for number in axis))
-            if not math.isclose(size, 1.0, abs_tol=1e-9) and _has_decimals(size):
-                report.note(f"joint {joint.name}: an axis of length {size:.6g} was brought to length one")
-    for contact in entry.contacts:
-        report.used("contact", contact.name, contact.type)
-    for closure in entry.closures:
-        report.used("closure", closure.name, closure.type)
+        _note_lengths(joint, report)
+    for kind, typed in (("contact", entry.contacts), ("closure", entry.closures)):
+        for part in typed:
+            report.used(kind, part.name, part.type)
     for coupling in entry.couplings:
         report.used("coupling", coupling.name)
     for motor in entry.motors or ():
         report.used("motor", motor if isinstance(motor, str) else motor.name)
-    for name in entry.keyframes:
-        report.used("keyframe", name)
-    for name in entry.parameters:
-        report.used("parameter", name)
+    names: dict[str, Iterable[str]] = {
+        "keyframe": entry.keyframes,
+        "parameter": entry.parameters,
+        "lock": entry.lock or (),
+        "configuration": entry.configuration,
+        "reference": () if entry.reference is None else (entry.reference.body,),
+        "weights": () if entry.weights is None else ("",),
+        "setting": [key for key in _SETTINGS if key in entry.model_fields_set],
+    }
+    for kind, elements in names.items():
+        for name in elements:
+            report.used(kind, name)
+    for note in entry.notes:
+        report.used("note", "", note)
+
+
+def _note_lengths(joint: JointEntry, report: LoadReport) -> None:
+    """Note axes that were probably meant to be unit vectors and are not."""
+    for axis in _directions(joint):
+        size = math.hypot(*(number.value for number in axis))
+        if not math.isclose(size, 1.0, abs_tol=1e-9) and _has_decimals(size):
+            report.note(f"joint {joint.name}: an axis of length {size:.6g} was brought to length one")
 
 
 def _directions(joint: object) -> list[list[Measured]]:

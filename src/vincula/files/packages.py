@@ -108,10 +108,8 @@ def record_meshes(root: Element, near: Path | None, packages: Packages, report: 
     for element in root.walk():
         if element.tag != "mesh":
             continue
-        written = element.attributes.get("filename", "") or next(
-            (u.text for u in element.find_all("uri")), ""
-        )
+        inside = (part.characters for part in element.children if part.tag == "uri")
+        written = element.attributes.get("filename", "") or next(inside, "")
         if written:
-            report.ignored(
-                "mesh", shown(written).strip("'"), f"never opened; {packages.resolve(written, near)[1]}"
-            )
+            found = packages.resolve(written, near)[1]
+            report.ignored("mesh", shown(written).strip("'"), f"never opened; {found}", of=element)

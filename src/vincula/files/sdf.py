@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterable
 from typing import Final
 
+from vincula.files.contents import account_elements
 from vincula.files.dialects.drake import read_constraint
 from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
@@ -74,7 +75,9 @@ def load_sdf(
         snapping.sdf(root)
     reader.read(root)
     record_meshes(root, source.path, packages or Packages.of(), reader.report)
-    return reader.finish(limits), reader.report
+    mechanism = reader.finish(limits)
+    account_elements(root, reader.report)
+    return mechanism, reader.report
 
 
 class _SdfReader:
@@ -94,7 +97,7 @@ class _SdfReader:
         if root.tag != "sdf":
             self.problems.add(root.place, got=f"<{root.tag}>", expected="<sdf>")
             self.problems.refuse()
-        version = root.attributes.get("version", "1.4")
+        version = root.get("version", "1.4")
         self.version = (
             float(version.split(".")[1]) if version.startswith("1.") and version[2:].isdigit() else 0.0
         )
@@ -121,7 +124,7 @@ class _SdfReader:
     def _model(self, model: Element) -> None:
         self.draft.name = model.name or "model"
         links = [e for e in model.find_all("link") if self._named(e)]
-        canonical = model.attributes.get("canonical_link", "") or (links[0].name if links else "")
+        canonical = model.get("canonical_link", "") or (links[0].name if links else "")
         self.frames.add_model(model, canonical)
         for link in links:
             self._link(link)
@@ -162,7 +165,9 @@ class _SdfReader:
         self.report.used("link", element.name)
         for part in element.children:
             if part.tag in _LINK_PARTS:
-                self.report.ignored(part.tag, element.name, "shapes, masses and sensors are not read")
+                self.report.ignored(
+                    part.tag, element.name, "shapes, masses and sensors are not read", of=part
+                )
             elif part.tag != "pose":
                 self.unknown.append(part)
 
@@ -176,7 +181,7 @@ class _SdfReader:
         if element.tag in ("link", "joint", "frame", "pose"):
             return
         if element.tag in _MODEL_PARTS:
-            self.report.ignored(element.tag, element.name, _MODEL_PARTS[element.tag])
+            self.report.ignored(element.tag, element.name, _MODEL_PARTS[element.tag], of=element)
         elif element.tag.startswith("drake:"):
             read_constraint(element, self.frames, self.draft, self.values, self.report)
         elif element.tag in ("model", "include"):

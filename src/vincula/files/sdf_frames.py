@@ -52,7 +52,7 @@ class SdfFrames:
     def add_model(self, model: Element, canonical_link: str) -> None:
         """The model's own frame; its `<pose>` places it, or its placement frame, in the world."""
         raw, _ = self.pose_of(model)
-        placed = model.attributes.get("placement_frame", "") or MODEL
+        placed = model.get("placement_frame", "") or MODEL
         self._frames[MODEL] = _Frame(Pose.identity(3), "", canonical_link, model.place)
         self._frames[WORLD] = _Frame(raw.inverse(), placed, WORLD, model.place)
         self._links.add(WORLD)
@@ -76,7 +76,7 @@ class SdfFrames:
     def add_frame(self, element: Element, name: str) -> None:
         """A frame: attached to the model, and relative to what it is attached to, by default."""
         raw, relative_to = self.pose_of(element)
-        attached = element.attributes.get("attached_to", "") or MODEL
+        attached = element.get("attached_to", "") or MODEL
         self._frames[name] = _Frame(raw, relative_to or attached, attached, element.place)
 
     def add_joint(self, element: Element, name: str, child: str) -> None:
@@ -143,9 +143,9 @@ class SdfFrames:
         """The `<pose>` of an element as written, and what it is relative to (empty for the default)."""
         found = next(element.find_all("pose"), None)
         if found is None or not found.text:
-            return Pose.identity(3), "" if found is None else found.attributes.get("relative_to", "")
-        relative_to = found.attributes.get("relative_to", "")
-        if found.attributes.get("rotation_format") == "quat_xyzw":
+            return Pose.identity(3), "" if found is None else found.get("relative_to", "")
+        relative_to = found.get("relative_to", "")
+        if found.get("rotation_format") == "quat_xyzw":
             values = self._values.numbers(found, found.text, 7, what="pose")
             if values is None:
                 return Pose.identity(3), relative_to
@@ -161,7 +161,7 @@ class SdfFrames:
             self._values.numbers(found, found.text, 6, what="pose")
             return Pose.identity(3), relative_to
         position = self._values.numbers(found, " ".join(words[:3]), 3, what="pose", unit="length")
-        degrees = found.attributes.get("degrees", "").strip() in ("true", "1")
+        degrees = found.get("degrees", "").strip() in ("true", "1")
         turn = self._values.angles(found, " ".join(words[3:]), what="pose", degrees=degrees)
         if position is None or turn is None:
             return Pose.identity(3), relative_to

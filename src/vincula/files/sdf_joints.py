@@ -102,7 +102,7 @@ class SdfJoints:
 
     def read(self, element: Element) -> None:
         """Add one `<joint>`."""
-        written = element.attributes.get("type", "")
+        written = element.get("type", "")
         if written not in TYPES:
             self._refuse_type(element, written)
             return
@@ -136,15 +136,15 @@ class SdfJoints:
 
     def _record_parts(self, joint: Element) -> None:
         """Record what is not read in a joint, its axes and their limits."""
-        axes = [*joint.find_all("axis"), *joint.find_all("axis2")]
-        limits = [limit for axis in axes for limit in axis.find_all("limit")]
+        axes = [part for part in joint.children if part.tag in ("axis", "axis2")]
+        limits = [part for axis in axes for part in axis.children if part.tag == "limit"]
         reasons = _JOINT_PARTS | _AXIS_PARTS | _LIMIT_PARTS
         for around in (joint, *axes, *limits):
             for part in around.children:
                 if part.tag not in KNOWN_IN_JOINTS[around.tag]:
                     self.unknown.append(part)
                 elif part.tag in reasons:
-                    self.report.ignored(part.tag, joint.name, reasons[part.tag])
+                    self.report.ignored(part.tag, joint.name, reasons[part.tag], of=part)
 
     def _refuse_type(self, element: Element, written: str) -> None:
         if written == "gearbox":
@@ -166,7 +166,7 @@ class SdfJoints:
         found += [("axis", m) for m in element.find_all("drake:mimic")]
         names = {joint.name: joint for joint in (element.parent or element).find_all("joint")}
         for axis, mimic in found:
-            leader = mimic.attributes.get("joint", "")
+            leader = mimic.get("joint", "")
             if leader not in names or leader == element.name:
                 self.values.problems.add(
                     mimic.place, f"mimic names the joint {shown(leader)}", name=leader,
@@ -180,7 +180,7 @@ class SdfJoints:
             if factor is None or offset is None or reference is None:
                 continue
             follower_axis = _axis_name(element, axis)
-            leader_axis = _axis_name(names[leader], mimic.attributes.get("axis", "axis"))
+            leader_axis = _axis_name(names[leader], mimic.get("axis", "axis"))
             self.draft.couplings.append(
                 Coupling(
                     f"mimic:{follower_axis}",
@@ -231,7 +231,7 @@ class SdfJoints:
 
     def _in_joint(self, joint: str, axis: Element | None, xyz: Element | None, vector: Vector) -> Vector:
         """An axis in the joint's frame, from the frame that it is expressed in."""
-        frame = xyz.attributes.get("expressed_in", "") if xyz is not None else ""
+        frame = xyz.get("expressed_in", "") if xyz is not None else ""
         flag = next(axis.find_all("use_parent_model_frame"), None) if axis is not None else None
         old = self.version <= 6 and flag is not None and flag.text in ("1", "true")
         if not frame and not old and self.version != 4:
@@ -267,7 +267,7 @@ class SdfJoints:
         """Limits by axis; an effort limit of zero marks a joint without a motor, as in Drake."""
         limits = []
         for tag in ("axis", "axis2"):
-            axis = next(element.find_all(tag), None)
+            axis = next((part for part in element.children if part.tag == tag), None)
             limit = next(axis.find_all("limit"), None) if axis is not None else None
             if axis is None:
                 continue
@@ -301,6 +301,6 @@ def _positive(value: float | None) -> float | None:
 
 def _axis_name(joint: Element, axis: str) -> str:
     """Name of an axis of a joint: a universal joint has two."""
-    if TYPES.get(joint.attributes.get("type", "")) == "universal":
+    if TYPES.get(joint.get("type", "")) == "universal":
         return f"{joint.name}.{2 if axis == 'axis2' else 1}"
     return joint.name

@@ -40,13 +40,13 @@ def only_model(root: Element, problems: Problems, report: LoadReport) -> tuple[E
     if len(worlds) == 1 and not models:
         for part in root.children:
             if part.tag in known:
-                report.ignored(part.tag, part.name, known[part.tag])
+                report.ignored(part.tag, part.name, known[part.tag], of=part)
             elif part.tag != "world":
                 unknown.append(part)
         holder, known = worlds[0], _OF_THE_WORLD
     for part in holder.children:
         if part.tag in known:
-            report.ignored(part.tag, part.name, known[part.tag])
+            report.ignored(part.tag, part.name, known[part.tag], of=part)
         elif part.tag in ("world", "joint", "include"):
             message = f"<{part.tag}> cannot be read in <{holder.tag}>: expected one <model>"
             problems.add(part.place, message, unsupported=True)
@@ -62,7 +62,7 @@ def _moving(holder: Element, problems: Problems, report: LoadReport) -> Element:
     if len(models) > 1 and len(moving) == 1:
         for model in models:
             if model is not moving[0]:
-                report.ignored("model", model.name, "it is static: a part of the surroundings")
+                report.ignored("model", model.name, "it is static: a part of the surroundings", of=model)
         return moving[0]
     if len(models) != 1:
         names = f" ({listing([shown(model.name) for model in moving], 6)})" if moving else ""
@@ -75,4 +75,4 @@ def _moving(holder: Element, problems: Problems, report: LoadReport) -> Element:
 
 
 def _is_static(model: Element) -> bool:
-    return any(part.text in ("1", "true") for part in model.find_all("static"))
+    return any(part.tag == "static" and part.characters in ("1", "true") for part in model.children)

@@ -107,7 +107,7 @@ class Snapping:
             if key:
                 element.attributes[key] = " ".join(words)
             else:
-                element.text = " ".join(words)
+                element.characters = " ".join(words)
 
 
 def snapped_words(found: Sequence[Snap], most: int = 4) -> str:
@@ -146,7 +146,7 @@ def _without_shapes(root: Element) -> Iterator[Element]:
 
 
 def _text(element: Element, key: str) -> str:
-    return element.attributes[key] if key else element.text
+    return element.attributes[key] if key else element.characters
 
 
 def _owner(element: Element) -> str:

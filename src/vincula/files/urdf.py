@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from vincula.arrays import Vector
+from vincula.files.contents import account_elements, account_repairs
 from vincula.files.dialects import reader_of_element, side_files
 from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
@@ -100,6 +101,8 @@ def load_urdf(
     for loops in side_files(source, beside, limits):
         loops.read(reader.draft, reader.values, reader.report)
     mechanism = reader.finish()
+    account_elements(root, reader.report)
+    account_repairs(reader.report)
     return mechanism, reader.report
 
 
@@ -127,7 +130,7 @@ class UrdfReader:
             elif element.tag in ("joint", "transmission"):
                 later.append(element)
             elif element.tag in _WITHOUT_KINEMATICS:
-                self.report.ignored(element.tag, element.name, _WITHOUT_KINEMATICS[element.tag])
+                self.report.ignored(element.tag, element.name, _WITHOUT_KINEMATICS[element.tag], of=element)
             else:
                 later.append(element)
         for element in later:
@@ -165,13 +168,13 @@ class UrdfReader:
         self.report.used("link", name)
         for part in element.children:
             if part.tag in _LINK_PARTS:
-                self.report.ignored(part.tag, name, _LINK_PARTS[part.tag])
+                self.report.ignored(part.tag, name, _LINK_PARTS[part.tag], of=part)
             else:
                 read_unknown(part, self.draft, self.values, self.report, _LINK_PARTS)
 
     def _joint(self, element: Element) -> None:
         name = self.values.name(element)
-        written = element.attributes.get("type", "")
+        written = element.get("type", "")
         if written not in TYPES:
             self.problems.add(
                 element.place, got=f"joint type {shown(written)}", expected="a joint type", name=written,
@@ -181,7 +184,7 @@ class UrdfReader:
         known = (*_READ_IN_JOINT, *_JOINT_PARTS)
         for part in element.children:
             if part.tag in _JOINT_PARTS:
-                self.report.ignored(part.tag, name, _JOINT_PARTS[part.tag])
+                self.report.ignored(part.tag, name, _JOINT_PARTS[part.tag], of=part)
             elif part.tag not in _READ_IN_JOINT:
                 read_unknown(part, self.draft, self.values, self.report, known)
         parent, child = (self.values.child_link(element, tag) for tag in ("parent", "child"))
@@ -207,7 +210,7 @@ class UrdfReader:
         if written in ("fixed", "floating"):
             return None
         found = next(element.find_all("axis"), None)
-        text = "1 0 0" if found is None else found.attributes.get("xyz", "1 0 0")
+        text = "1 0 0" if found is None else found.get("xyz", "1 0 0")
         return self.values.direction(found or element, text, what="axis")
 
     def _limits(self, element: Element, written: str) -> tuple[JointLimits, ...]:
@@ -232,7 +235,7 @@ class UrdfReader:
         offset = self.values.number(found, "offset", default=0.0)
         if not leader or factor is None or offset is None:
             return
-        joints = {j.attributes.get("name", ""): j for j in (element.parent or element).find_all("joint")}
+        joints = {j.get("name", ""): j for j in (element.parent or element).find_all("joint")}
         if leader not in joints or leader == name:
             self.problems.add(
                 found.place, f"mimic names the joint {shown(leader)}", name=leader,

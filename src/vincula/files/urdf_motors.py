@@ -51,7 +51,7 @@ def read_transmission(element: Element, draft: RobotDraft, values: XmlValues, re
 def _kind(element: Element) -> str:
     """`transmission_interface/SimpleTransmission` and `SimpleTransmission` are the same."""
     inside = next(element.find_all("type"), None)
-    text = inside.text if inside is not None else element.attributes.get("type", "")
+    text = inside.text if inside is not None else element.get("type", "")
     return text.rsplit("/", 1)[-1].rsplit("::", 1)[-1].strip()
 
 

@@ -21,14 +21,14 @@ def origin(element: Element, values: XmlValues, tag: str = "origin") -> Pose | N
 
 def placement(element: Element, values: XmlValues) -> Pose | None:
     """Pose of the attributes xyz [m] with rpy [rad] or, from URDF 1.2 on, quat_xyzw; None after a problem."""
-    given = element.attributes
-    xyz = values.numbers(element, given.get("xyz", "0 0 0"), 3, what="xyz", unit="length")
-    if "quat_xyzw" in given:
-        q = values.numbers(element, given["quat_xyzw"], 4, what="quat_xyzw", unit="angle")
+    xyz = values.numbers(element, element.get("xyz", "0 0 0"), 3, what="xyz", unit="length")
+    quaternion = element.get("quat_xyzw")
+    if quaternion is not None:
+        q = values.numbers(element, quaternion, 4, what="quat_xyzw", unit="angle")
         if q is not None and float(np.linalg.norm(q)) < _SHORTEST_QUATERNION:
             values.problems.add(element.place, got="quat_xyzw of length zero", expected="a unit quaternion")
             q = None
         turn = None if q is None else rotation_from_quaternion_wxyz([q[3], q[0], q[1], q[2]])
     else:
-        turn = values.angles(element, given.get("rpy", "0 0 0"), what="rpy")
+        turn = values.angles(element, element.get("rpy", "0 0 0"), what="rpy")
     return None if xyz is None or turn is None else Pose.at(xyz, turn)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Final, NoReturn
+from typing import Final, NoReturn, overload
 from xml.parsers import expat
 
 from vincula.errors import FileError
@@ -35,7 +35,9 @@ class Element:
         column: Column of its start tag in characters, from 1.
         parent: The element around it; None for the root.
         children: Elements inside it.
-        text: Text directly inside it, blanks at the ends removed.
+        characters: Text directly inside it, blanks at the ends removed.
+        read: Attributes that a reader has asked for; None while nothing was asked of the element at all.
+        left_out: Whether a reader has told that it ignores the element and everything inside it.
     """
 
     tag: str
@@ -45,7 +47,31 @@ class Element:
     column: int
     parent: Element | None = None
     children: list[Element] = field(default_factory=list)
-    text: str = ""
+    characters: str = ""
+    read: set[str] | None = None
+    left_out: bool = False
+
+    @overload
+    def get(self, attribute: str) -> str | None: ...
+
+    @overload
+    def get(self, attribute: str, default: str) -> str: ...
+
+    def get(self, attribute: str, default: str | None = None) -> str | None:
+        """An attribute, which counts as read from now on; the default when there is none."""
+        self.note_read(attribute)
+        return self.attributes.get(attribute, default)
+
+    @property
+    def text(self) -> str:
+        """Its text; the element counts as read from now on."""
+        self.note_read()
+        return self.characters
+
+    def note_read(self, attribute: str = "") -> None:
+        """Keep that a reader makes use of the element, and of an attribute."""
+        self.read = set() if self.read is None else self.read
+        self.read.add(attribute)
 
     @property
     def name(self) -> str:
@@ -80,8 +106,11 @@ class Element:
             waiting.extend(reversed(element.children))
 
     def find_all(self, tag: str) -> Iterator[Element]:
-        """Its children with a tag."""
-        return (child for child in self.children if child.tag == tag)
+        """Its children with a tag; each counts as read when it is given."""
+        for child in self.children:
+            if child.tag == tag:
+                child.note_read()
+                yield child
 
 
 def parse_xml(source: Source, limits: Limits = DEFAULT_LIMITS, report: LoadReport | None = None) -> Element:
@@ -111,13 +140,10 @@ def without_hyphens(text: str) -> tuple[str, list[int]]:
     """
     pieces: list[str] = []
     lines: list[int] = []
-    at = done = line = counted = 0
-    while (at := text.find("<", at)) >= 0:
-        close = next((end for begin, end in _VERBATIM if text.startswith(begin, at)), "")
-        if not close:
-            at += 1
-            continue
-        stop = text.find(close, at + (4 if close == "-->" else 2))
+    done = onward = line = counted = 0
+    while found := _VERBATIM.search(text, onward):
+        at, close = found.start(), _CLOSING[found.group()]
+        stop = text.find(close, found.end())
         if stop < 0:
             break
         if close == "-->" and ("--" in (body := text[at + 4 : stop]) or body.endswith("-")):
@@ -125,11 +151,12 @@ def without_hyphens(text: str) -> tuple[str, list[int]]:
             line += text.count("\n", counted, at)
             counted, done = at, stop
             lines.append(line + 1)
-        at = stop + len(close)
+        onward = stop + len(close)
     return "".join([*pieces, text[done:]]), lines
 
 
-_VERBATIM: Final = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"))
+_CLOSING: Final = {"<!--": "-->", "<![CDATA[": "]]>", "<?": "?>"}
+_VERBATIM: Final = re.compile("|".join(map(re.escape, _CLOSING)))
 _INK: Final = re.compile(r"[^\n]")
 
 
@@ -202,7 +229,7 @@ class _TreeBuilder:
                 self._refuse(f"attribute {shown(name)} has more than {most} characters", line, column)
 
     def _end(self, _tag: str) -> None:
-        self._open.pop().text = "".join(self._texts.pop()).strip()
+        self._open.pop().characters = "".join(self._texts.pop()).strip()
 
     def _characters(self, data: str) -> None:
         if self._texts:

@@ -43,7 +43,7 @@ class XmlValues:
 
     def name(self, element: Element, attribute: str = "name", *, what: str = "") -> str:
         """A required name; empty after a problem."""
-        text = element.attributes.get(attribute)
+        text = element.get(attribute)
         kind = what or f"attribute {attribute!r}"
         if text is None:
             self.problems.add(element.place, f"{kind} is missing")
@@ -85,7 +85,7 @@ class XmlValues:
         self, element: Element, attribute: str, *, default: float | None = None, unit: str = ""
     ) -> float | None:
         """One finite number of an attribute; the default when it is absent, None after a problem."""
-        text = element.attributes.get(attribute)
+        text = element.get(attribute)
         if text is None:
             return default
         return self._number(element, text.strip(), attribute, unit)

@@ -34,7 +34,7 @@ WITH_AXIS: Final = ("revolute", "prismatic", "cylindrical", "planar")
 
 def loop_type(element: Element, values: XmlValues) -> str:
     """Our name of the type of a loop joint; empty after a problem."""
-    written = element.attributes.get("type", "")
+    written = element.get("type", "")
     if written in TYPES:
         return TYPES[written]
     values.problems.add(

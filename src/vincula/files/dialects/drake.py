@@ -57,9 +57,9 @@ def read_constraint(
     """Add one `drake:` element of an SDF model to the draft."""
     kind = element.tag.removeprefix("drake:").removesuffix("_constraint")
     if element.tag in IGNORED:
-        report.ignored(element.tag, element.name, IGNORED[element.tag])
+        report.ignored(element.tag, element.name, IGNORED[element.tag], of=element)
     elif element.tag in SPRINGS:
-        report.ignored(element.tag, element.name, SPRINGS[element.tag])
+        report.ignored(element.tag, element.name, SPRINGS[element.tag], of=element)
         report.note(f"<{element.tag}> is a spring, not a joint: what it holds together is open here")
     elif kind == "weld":
         tags = _WELD_ENDS[any(element.find_all("parent"))]
@@ -73,7 +73,9 @@ def read_constraint(
     elif kind == "joint":
         _planar_joint(element, frames, draft, values, report)
     elif not suspicion(element, draft):
-        report.ignored(element.tag, element.name, "not known; it says nothing about links and joints")
+        report.ignored(
+            element.tag, element.name, "not known; it says nothing about links and joints", of=element
+        )
     else:
         values.problems.add(
             element.place, f"<{element.tag}> cannot be represented", name=element.tag,
@@ -104,7 +106,7 @@ def _between_points(
         name = element.name or f"ball:{names[0]}-{names[1]}"
         close_loop(element, draft, report, "spherical", (ends[0], ends[1]), name=name, rows_only=True)
     elif has_stiffness(element, values):
-        report.ignored(element.tag, element.name, "a distance with a stiffness is a spring")
+        report.ignored(element.tag, element.name, "a distance with a stiffness is a spring", of=element)
         report.note(f"<{element.tag}> with a stiffness is a spring, not a rod: it is left out")
     else:
         tag = prefix + "distance"
@@ -118,7 +120,7 @@ def has_stiffness(element: Element, values: XmlValues) -> bool:
     """Whether a distance constraint has a finite stiffness."""
     for part in element.children:
         if part.tag.endswith("_stiffness"):
-            text = part.attributes.get("value", part.text).strip()
+            text = part.get("value", part.text).strip()
             if text.lstrip("+") not in ("inf", "Inf", "INF", "infinity"):
                 return values.numbers(part, text, 1, what="stiffness") is not None
     return False
@@ -168,7 +170,7 @@ def _planar_joint(
     element: Element, frames: SdfFrames, draft: RobotDraft, values: XmlValues, report: LoadReport
 ) -> None:
     """`<drake:joint type="planar">`: the x-y planes of two frames."""
-    name, kind = values.name(element), element.attributes.get("type", "")
+    name, kind = values.name(element), element.get("type", "")
     if kind != "planar":
         values.problems.add(
             element.place, got=f"joint type {shown(kind)}", name=kind, choices=("planar",),

@@ -34,9 +34,9 @@ def read_drake(element: Element, draft: RobotDraft, values: XmlValues, report: L
     """Add one `drake:` element of a URDF file to the draft."""
     kind = element.tag.removeprefix("drake:")
     if element.tag in IGNORED:
-        report.ignored(element.tag, element.name, IGNORED[element.tag])
+        report.ignored(element.tag, element.name, IGNORED[element.tag], of=element)
     elif element.tag in SPRINGS:
-        report.ignored(element.tag, element.name, SPRINGS[element.tag])
+        report.ignored(element.tag, element.name, SPRINGS[element.tag], of=element)
         report.note(f"<{element.tag}> is a spring, not a joint: what it holds together is open here")
     elif kind == "joint":
         _joint(element, draft, values, report)
@@ -49,7 +49,9 @@ def read_drake(element: Element, draft: RobotDraft, values: XmlValues, report: L
     elif kind == "frame":
         read_frame(element, draft, values, report)
     elif not suspicion(element, draft):
-        report.ignored(element.tag, element.name, "not known; it says nothing about links and joints")
+        report.ignored(
+            element.tag, element.name, "not known; it says nothing about links and joints", of=element
+        )
     else:
         values.problems.add(
             element.place, f"<{element.tag}> cannot be represented", name=element.tag,
@@ -59,7 +61,7 @@ def read_drake(element: Element, draft: RobotDraft, values: XmlValues, report: L
 
 
 def _joint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
-    name, written = values.name(element), element.attributes.get("type", "")
+    name, written = values.name(element), element.get("type", "")
     if written not in JOINTS:
         values.problems.add(
             element.place, got=f"joint type {shown(written)}", name=written, choices=JOINTS,
@@ -75,7 +77,7 @@ def _joint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadR
     elif written != "ball":
         found = next(element.find_all("axis"), None)
         default = "0 0 1" if written == "planar" else "1 0 0"
-        text = default if found is None else found.attributes.get("xyz", default)
+        text = default if found is None else found.get("xyz", default)
         axis = values.direction(found or element, text, what="axis")
         if axis is None:
             return
@@ -133,7 +135,7 @@ def _between_points(
     for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ")):
         holder, place = (only_child(element, prefix + tag, values) for tag in (body, point))
         link = link_named(holder, draft, values, "name") if holder is not None else ""
-        text = place.attributes.get("value", "") if place is not None else "0 0 0"
+        text = place.get("value", "") if place is not None else "0 0 0"
         xyz = values.numbers(place or element, text, 3, what=point, unit="length")
         if link and xyz is not None:
             ends.append((link, Pose.at(xyz)))
@@ -143,7 +145,7 @@ def _between_points(
         close_loop(element, draft, report, "spherical", (ends[0], ends[1]), rows_only=True)
         return
     if has_stiffness(element, values):
-        report.ignored(element.tag, element.name, "a distance with a stiffness is a spring")
+        report.ignored(element.tag, element.name, "a distance with a stiffness is a spring", of=element)
         report.note(f"<{element.tag}> with a stiffness is a spring, not a rod: it is left out")
         return
     found = only_child(element, prefix + "distance", values)

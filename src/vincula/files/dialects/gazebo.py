@@ -30,7 +30,7 @@ _COUPLING: Final = ("mimicJoint", "mimic_joint")
 def read_gazebo(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
     """Read one `<gazebo>` element."""
     if not element.children:
-        report.ignored("gazebo", element.attributes.get("reference", ""), "simulator settings")
+        report.ignored("gazebo", element.get("reference", ""), "simulator settings", of=element)
     for part in element.children:
         if part.tag == "joint" and "reference" not in element.attributes:
             _loop(part, draft, values, report)
@@ -39,13 +39,12 @@ def read_gazebo(element: Element, draft: RobotDraft, values: XmlValues, report: 
                 part.place, f"<{part.tag}> in <gazebo> adds bodies: it cannot be read", unsupported=True
             )
         elif part.tag == "plugin":
-            report.ignored("plugin", part.name, "plugins are never loaded")
+            report.ignored("plugin", part.name, "plugins are never loaded", of=part)
             if any(inner.tag in _COUPLING for inner in part.walk()):
                 report.note(f"the plugin {part.name} couples joints; write <mimic> in the joint instead")
         else:
-            report.ignored(
-                f"gazebo {part.tag}", element.attributes.get("reference", ""), "simulator settings"
-            )
+            reference = element.attributes.get("reference", "")
+            report.ignored(f"gazebo {part.tag}", reference, "simulator settings", of=part)
 
 
 def _loop(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:

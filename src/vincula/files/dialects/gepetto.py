@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from vincula.files.contents import account_values
 from vincula.files.limits import Limits
 from vincula.files.problems import form_of, shown
 from vincula.files.report import LoadReport
@@ -107,6 +108,7 @@ class _SideFileReader:
             if key in tree:
                 self._report.ignored(key, "", "the motors are those of name_mot")
         self._problems.refuse_if_any()
+        account_values(self._document.root, self._report, ignored=_NUMBERS)
 
     def _list(self, tree: dict[str, Any], key: str, *, alone: int | None = None) -> list[Any]:
         """The list of a key; a text alone stands for a list of so many like it."""

@@ -51,7 +51,7 @@ def read_loop_joint(element: Element, draft: RobotDraft, values: XmlValues, repo
     axis = None
     if kind in WITH_AXIS:
         found = next(element.find_all("axis"), None)
-        text = "1 0 0" if found is None else found.attributes.get("xyz", "1 0 0")
+        text = "1 0 0" if found is None else found.get("xyz", "1 0 0")
         axis = values.direction(found or element, text, what="axis")
         if axis is None:
             return
@@ -69,11 +69,11 @@ def _parent_and_child(
     found = next(element.find_all("axis"), None)
     axis = None
     if kind in WITH_AXIS:
-        text = "1 0 0" if found is None else found.attributes.get("xyz", "1 0 0")
+        text = "1 0 0" if found is None else found.get("xyz", "1 0 0")
         axis = values.direction(found or element, text, what="axis")
         if axis is None:
             return
-    if found is not None and found.attributes.get("frame", "parent") != "parent":
+    if found is not None and found.get("frame", "parent") != "parent":
         values.problems.add(found.place, got="another frame than the parent's", expected='frame="parent"')
     if not (kind and all(links)) or places[0] is None or places[1] is None:
         return

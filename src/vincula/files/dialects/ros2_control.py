@@ -27,7 +27,7 @@ def read_ros2_control(element: Element, draft: RobotDraft, values: XmlValues, re
     draft.motors = {} if draft.motors is None else draft.motors
     for part in element.children:
         if part.tag in _IGNORED:
-            report.ignored(part.tag, part.name or element.name, _IGNORED[part.tag])
+            report.ignored(part.tag, part.name or element.name, _IGNORED[part.tag], of=part)
         elif part.tag != "joint":
             values.problems.add(
                 part.place, f"<{part.tag}> is not understood in <ros2_control>", name=part.tag,

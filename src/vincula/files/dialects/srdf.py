@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from vincula.files.contents import account_elements
 from vincula.files.limits import Limits
 from vincula.files.problems import Problems, shown
 from vincula.files.report import LoadReport
@@ -59,7 +60,7 @@ class SrdfFile:
         joints = {joint.name for joint in draft.joints if not joint.closure}
         for element in root.children:
             if element.tag in _IGNORED:
-                report.ignored(f"SRDF {element.tag}", element.name, _IGNORED[element.tag])
+                report.ignored(f"SRDF {element.tag}", element.name, _IGNORED[element.tag], of=element)
             elif element.tag != "passive_joint":
                 problems.add(
                     element.place, f"<{element.tag}> is not understood in SRDF", name=element.tag,
@@ -71,3 +72,4 @@ class SrdfFile:
             elif name:
                 problems.add(element.place, f"there is no joint {shown(name)}", name=name, choices=joints)
         problems.refuse_if_any()
+        account_elements(root, report)

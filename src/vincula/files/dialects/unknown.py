@@ -37,7 +37,9 @@ def read_unknown(
     """Ignore an unknown element, or refuse it when it may be part of the mechanism."""
     reason = suspicion(element, draft)
     if not reason:
-        report.ignored(element.tag, element.name, "not known; it says nothing about links and joints")
+        report.ignored(
+            element.tag, element.name, "not known; it says nothing about links and joints", of=element
+        )
         return
     around = element.parent.tag if element.parent is not None else ""
     values.problems.add(
@@ -57,7 +59,7 @@ def suspicion(element: Element, draft: RobotDraft) -> str:
     for part in element.walk():
         if _WORDS.search(part.tag):
             return f"<{part.tag}> may be a loop, a coupling or a motor"
-        named.update(word for word in (*part.attributes.values(), part.text) if word in links | joints)
+        named.update(word for word in (*part.attributes.values(), part.characters) if word in links | joints)
     if len(named & links) > 1 or len(named & joints) > 1:
         return f"it names {' and '.join(sorted(named)[:2])}, so it may be a loop or a coupling"
     return ""

@@ -48,7 +48,7 @@ def read_loop(element: Element, draft: RobotDraft, values: XmlValues, report: Lo
     axis = second = None
     found = list(element.find_all("axis"))
     if kind in WITH_AXIS or (kind == "universal" and found):
-        text = found[0].attributes.get("xyz", "1 0 0") if found else "1 0 0"
+        text = found[0].get("xyz", "1 0 0") if found else "1 0 0"
         axis = values.direction(found[0] if found else element, text, what="axis")
         if axis is None:
             return
@@ -56,7 +56,7 @@ def read_loop(element: Element, draft: RobotDraft, values: XmlValues, report: Lo
         if len(found) != 2:
             values.problems.add(element.place, "a universal loop needs two <axis>")
             return
-        second = values.direction(found[1], found[1].attributes.get("xyz", ""), what="axis")
+        second = values.direction(found[1], found[1].get("xyz", ""), what="axis")
         if second is None:
             return
         if axis is not None and abs(float(axis @ second)) > 1.0 - 1e-9:
@@ -71,7 +71,7 @@ def read_loop(element: Element, draft: RobotDraft, values: XmlValues, report: Lo
 
 def read_old_constraint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
     """Add one `<constraint>` with a predecessor and a successor: a point, or wheels that roll."""
-    kind = element.attributes.get("type", "")
+    kind = element.get("type", "")
     if kind == "rolling":
         read_coupling(element, draft, values, report)
         return

@@ -92,5 +92,5 @@ def _place(element: Element, side: str, values: XmlValues) -> Pose | None:
 def _axis(element: Element, side: str, values: XmlValues) -> Vector | None:
     tags = (f"{side}_axis", "axis")
     found = next((child for tag in tags for child in element.find_all(tag)), None)
-    text = "1 0 0" if found is None else found.attributes.get("xyz", "1 0 0")
+    text = "1 0 0" if found is None else found.get("xyz", "1 0 0")
     return values.direction(found or element, text, what=tags[0])
