@@ -43,3 +43,14 @@ def test_schema_is_a_json_schema(run) -> None:
         schema = json.loads(run(*words).stdout)
         assert schema["$schema"].startswith("https://json-schema.org/")
         assert "joints" in schema["properties"]
+
+
+def test_schemas_of_sweep_and_design_files(run) -> None:
+    """They know the keys that the files have, with the hyphens that people write."""
+    sweep, design = (json.loads(run("schema", kind).stdout) for kind in ("sweep", "design"))
+    assert {"grid", "low-discrepancy", "quantities"} <= set(sweep["properties"])
+    assert sweep["additionalProperties"] is design["additionalProperties"] is False
+    assert set(design["required"]) == {"design", "model", "variables", "objectives"}
+    assert "no-singularity" in design["$defs"]["ConstraintEntry"]["properties"]
+    assert set(design["$defs"]["VariableEntry"]["required"]) == {"from", "to"}
+    run("schema", "robot", code=2)

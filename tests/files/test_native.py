@@ -165,7 +165,7 @@ def test_content_decides_not_the_ending(tmp_path: Path) -> None:
 
 
 def test_type_names_are_those_of_the_library() -> None:
-    from vincula.files.schema import json_schema
+    from vincula.files.json_schema import json_schema
 
     definitions = json_schema()["$defs"]
     mapping = definitions["NativeFile"] if "NativeFile" in definitions else json_schema()
@@ -175,7 +175,7 @@ def test_type_names_are_those_of_the_library() -> None:
 
 
 def test_the_published_schema_says_what_is_read() -> None:
-    from vincula.files.schema import json_schema
+    from vincula.files.json_schema import json_schema
 
     schema = json_schema()
     assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"

@@ -11,6 +11,7 @@ from vincula.cli.output import print_json
 
 if TYPE_CHECKING:
     from vincula.cli.page import Page
+    from vincula.files.json_schema import SchemaKind
     from vincula.mechanism.catalog.entry import Entry
 
 
@@ -77,13 +78,14 @@ def _entry_page(entry: Entry) -> Page:
     return page
 
 
-@click.command("schema", short_help="Print the JSON schema of native files.")
+@click.command("schema", short_help="Print the JSON schema of native, sweep or design files.")
+@click.argument("kind", type=click.Choice(["native", "sweep", "design"]), default="native")
 @output_options
-def schema_command(as_json: bool) -> None:
-    """Print the JSON schema of the native file format, with or without --json.
+def schema_command(kind: SchemaKind, as_json: bool) -> None:
+    """Print the JSON schema of native files (or of sweep or design files), with or without --json.
 
-    Editors that know JSON schema complete and check native files with it.
+    Editors that know JSON schema complete and check such files with it.
     """
-    from vincula.files.schema import json_schema
+    from vincula.files.json_schema import json_schema
 
-    print_json(json_schema())
+    print_json(json_schema(kind))

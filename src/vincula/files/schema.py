@@ -306,25 +306,3 @@ class NativeFile(Strict):
 
 class ConfigurationFile(RootModel[dict[Name, Values]]):
     """A configuration in a file: values by joint."""
-
-
-def json_schema() -> dict[str, Any]:
-    """The JSON schema of native files, version 1 (draft 2020-12)."""
-    schema = _without_null(NativeFile.model_json_schema(by_alias=True))
-    schema["title"] = "vincula native file, version 1"
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-
-def _without_null(schema: Any) -> Any:
-    """The schema without "or null": in Python None is an absent key, in a file a missing value."""
-    if isinstance(schema, list):
-        return [_without_null(item) for item in schema]
-    if not isinstance(schema, dict):
-        return schema
-    kept = {k: _without_null(v) for k, v in schema.items() if k != "default" or v is not None}
-    choices = kept.get("anyOf")
-    if isinstance(choices, list) and {"type": "null"} in choices:
-        choices = [choice for choice in choices if choice != {"type": "null"}]
-        del kept["anyOf"]
-        kept.update(choices[0] if len(choices) == 1 else {"anyOf": choices})
-    return kept
