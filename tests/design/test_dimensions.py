@@ -195,6 +195,49 @@ def test_a_front_is_not_beaten_and_checked() -> None:
     for member in signed:
         assert not ((others <= member).all(axis=1) & (others < member).any(axis=1)).any()
     assert found.largest_difference < 1e-9
+    assert found.method == "nsga2"
+    assert "NSGA-II, seed 1" in str(found)
+
+
+def test_three_objectives_by_nsga3() -> None:
+    """Unbeaten in all three, spread over both ends; the same seed finds the same."""
+    pytest.importorskip("pymoo")
+    three = [
+        Index(quantity="kinematic.condition:translation"),
+        Index(quantity="kinematic.smallest"),
+        Force(direction=(0.0, 1.0, 0.0)),
+    ]
+    found = small(objectives=three).front(population=12, generations=4, seed=2)
+    assert found.to_dict()["search"]["method"] == "nsga3"
+    signed, others = found.members.signed, found.everything.signed
+    for member in signed:
+        assert not ((others <= member).all(axis=1) & (others < member).any(axis=1)).any()
+    # The best of every objective alone beats all others there, so it is on the front.
+    assert np.array_equal(signed.min(axis=0), others.min(axis=0))
+    again = small(objectives=three).front(population=12, generations=4, seed=2)
+    assert np.array_equal(found.members.designs, again.members.designs)
+
+
+def test_an_objective_without_bound_is_the_best_there_is() -> None:
+    """Loads that the structure carries without torque are not searched away from as if they were none."""
+    from vincula.design.front import BOUNDLESS, searched
+
+    judged = Judged(
+        np.zeros((3, 1)), np.array([[np.inf], [2.0], [np.nan]]), np.zeros((3, 4)), np.array([-1.0]),
+        np.zeros(3, dtype=bool),
+    )  # fmt: skip
+    boundless, two, unknown = searched(judged)[:, 0]
+    assert boundless == -BOUNDLESS < two < unknown == BOUNDLESS
+
+
+@pytest.mark.parametrize(("objectives", "population"), [(3, 12), (3, 92), (4, 20), (5, 40), (8, 9)])
+def test_a_design_for_every_direction(objectives: int, population: int) -> None:
+    directions = pytest.importorskip("pymoo.util.ref_dirs").get_reference_directions
+    from vincula.design.front import partitions
+
+    parts = partitions(objectives, population)
+    assert len(directions("das-dennis", objectives, n_partitions=parts)) <= population
+    assert math.comb(parts + objectives, parts + 1) > population
 
 
 @pytest.mark.parametrize(

@@ -138,8 +138,7 @@ def _settings(entry: SearchEntry, objectives: int) -> dict[str, Any]:
         "population": entry.population,
         "generations": entry.generations,
     }
-    if objectives == 1:
-        how |= {"samples": entry.samples, "polish": entry.polish}
+    how |= {"samples": entry.samples, "polish": entry.polish} if objectives == 1 else {"method": entry.method}
     return {name: value for name, value in how.items() if value is not None}
 
 

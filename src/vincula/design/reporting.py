@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vincula.design.front import NAMES
 from vincula.design.judged import Judged
 from vincula.design.measures import SphereDistance
 from vincula.design.neighbourhood import MOVES
@@ -127,6 +128,7 @@ def front_facts(found: Front) -> dict[str, Any]:
             "feasible": int(found.everything.feasible.sum()),
             "killed_by": found.counts,
             "seed": found.seed,
+            "method": found.method,
         },
     }
 
@@ -187,18 +189,22 @@ def optimum_text(found: Optimum) -> str:
 
 
 def front_text(found: Front) -> str:
-    """A search for compromises in words."""
+    """A search for compromises in words: a numbered line each, best in the first objective first."""
     problem = found.problem
-    head = ", ".join(f"{o.name} ({o.better} is better)" for o in problem.objectives)
-    lines = [f"{problem.name}: {len(found.members)} compromises of {head}"]
-    for design, values in zip(found.members.designs, found.members.objectives, strict=True):
-        lines.append(
-            "  " + "  ".join(f"{value:10.6g}" for value in values) + "   " + _designs(problem, design)
-        )
+    lines = [f"{problem.name}: {len(found.members)} compromises at {_places(problem)}"]
+    letters = [chr(ord("a") + k) for k in range(len(problem.objectives))]
+    for letter, objective in zip(letters, problem.objectives, strict=True):
+        lines.append(f"  {letter}  {objective.name} ({objective.better} is better, {objective.over})")
+    lines.append("    no  " + "  ".join(f"{letter:>10}" for letter in letters))
+    members = zip(found.members.designs, found.members.objectives, strict=True)
+    for place, (design, values) in enumerate(members, start=1):
+        columns = "  ".join(f"{value:10.6g}" for value in values)
+        lines.append(f"  {place:4}  {columns}   {_designs(problem, design)}")
+    feasible = int(found.everything.feasible.sum())
     lines.append(
-        f"  {found.evaluated} designs evaluated, {int(found.everything.feasible.sum())} feasible; seed "
-        f"{found.seed}; computed again one by one: largest difference {found.largest_difference:.1e}"
+        f"  {found.evaluated} designs evaluated, {feasible} feasible; {NAMES[found.method]}, seed {found.seed}"
     )
+    lines.append(f"  computed again one by one: largest difference {found.largest_difference:.1e}")
     return "\n".join([*lines, *killed_text(found.counts)])
 
 

@@ -77,6 +77,7 @@ class SearchEntry(Strict):
     seed: Whole = 0
     population: Whole | None = None
     generations: Whole | None = None
+    method: Literal["nsga2", "nsga3"] | None = None
     samples: Whole = 200
     polish: bool = True
 
