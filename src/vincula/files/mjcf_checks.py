@@ -29,11 +29,16 @@ PLACING: Final = {
     "anchor": 3,
     "relpose": 7,
     "ref": 1,
+    "offset": 3,
+    "fromto": 6,
 }
 """Attributes that place bodies, joints, sites, frames and loops, and how many numbers each has."""
 
 PLACED: Final = frozenset({"body", "joint", "freejoint", "site", "frame", "replicate", "connect", "weld"})
 """Elements whose placing attributes make the mechanism."""
+
+_SCALING: Final = frozenset({"gear", "coef", "polycoef", "qpos"})
+"""Other attributes whose numbers become part of a mechanism."""
 
 _DIRECTIONS: Final = {"axis": 3, "zaxis": 3, "axisangle": 3, "quat": 4}
 _SHORTEST: Final = 1e-9
@@ -161,6 +166,8 @@ def _check_numbers(element: Element, problems: Problems, *, in_radians: bool) ->
             if bad is not None:
                 what = f"{attribute}: got {shown(bad)}, expected finite numbers"
                 problems.add(element.place, what)
+            elif attribute in _SCALING:
+                _check_sizes(element, attribute, problems)
 
 
 def _not_finite(value: str) -> Iterator[str]:
@@ -182,6 +189,14 @@ def _expected_instead(word: str) -> str:
     if math.isinf(size):
         return "a finite number"
     return f"a number of at most {_LARGEST:g}" if size > _LARGEST else ""
+
+
+def _check_sizes(element: Element, attribute: str, problems: Problems) -> None:
+    for word in numbers_of(element, attribute):
+        if is_number(word) and abs(float(word)) > _LARGEST:
+            what = f"{attribute}: got {shown(word)}, expected numbers of at most {_LARGEST:g}"
+            problems.add(element.place, what)
+            return
 
 
 def _check_placing(element: Element, attribute: str, problems: Problems, *, in_radians: bool) -> None:
