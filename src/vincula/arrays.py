@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vincula.errors import NonFiniteError, ShapeError
+from vincula.traced import holds_traced
 
 Vector = NDArray[np.float64]
 """One-dimensional array of doubles."""
@@ -45,6 +46,8 @@ def checked(
             raise TypeError
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
+        if holds_traced(values):
+            return _traced(values, name, shape)
         raise ShapeError(name, np.shape(_as_object(values)), f"numbers of shape {expected}") from None
     fits = array.ndim == len(shape) and all(
         n is None or n == got for n, got in zip(shape, array.shape, strict=True)
@@ -55,6 +58,20 @@ def checked(
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise NonFiniteError(name, where, float(array[where]))
     return frozen(array)
+
+
+def _traced(values: Any, name: str, shape: Sequence[int | None]) -> NDArray[Any]:
+    """Traced numbers as a read-only array of objects; whether they are finite is seen where they are used."""
+    array = np.array(values, dtype=object)
+    if [n if n is not None else got for n, got in zip(shape, array.shape, strict=False)] != list(array.shape):
+        raise ShapeError(name, array.shape, str(tuple(shape)))
+    array.setflags(write=False)
+    return array
+
+
+def numbers(values: ArrayLike) -> NDArray[Any]:
+    """A copy of numbers as an array of doubles; of objects where there are traced numbers among them."""
+    return np.array(values, dtype=object if holds_traced(values) else np.float64)
 
 
 def _as_object(values: Any) -> NDArray[np.object_]:

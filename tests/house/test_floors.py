@@ -25,6 +25,8 @@ FLOORS = {
     "spatial": 1,
     "errors": 0,
     "arrays": 0,
+    "traced": 0,
+    "elementary": 0,
 }
 
 # Which rooms may import a package that is slow to import or may be missing.

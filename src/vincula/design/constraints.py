@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from vincula.arrays import Vector
+from vincula.design.functions import of_many
 from vincula.design.measures import Measure, SingularityDistance
 from vincula.errors import ModelError
 from vincula.mechanism.residuals import axis_values
@@ -148,15 +149,13 @@ class Relation(Between):
         """Nothing here: the problem checks relations first, see `of_variables`."""
         return np.zeros(len(lanes.reached))
 
-    def of_variables(self, rows: list[dict[str, float]]) -> Vector:
-        """By how much every design breaks it."""
-        values = np.full(len(rows), np.nan)
-        for k, row in enumerate(rows):
-            try:
-                values[k] = float(self.value(row))
-            except (ArithmeticError, ValueError):
-                continue
-        return self.outside(values)
+    def of_variables(self, columns: Mapping[str, Vector]) -> Vector:
+        """By how much every design breaks it.
+
+        Args:
+            columns: Values of the variables by name, one a design.
+        """
+        return self.outside(of_many(self.value, columns))
 
 
 @final

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vincula.arrays import Vector
+from vincula.elementary import larger, sqrt
 from vincula.errors import ModelError
 from vincula.mechanism.drawing import DrawnJoint, Reference
 from vincula.mechanism.drawn_joints import Prismatic, Revolute, Spherical, Universal
@@ -109,10 +108,10 @@ def _elbow(start: Vector, end: Vector, first: float, second: float, side: float)
         ModelError: They do not meet.
     """
     line = end - start
-    gap = float(np.linalg.norm(line))
+    gap = np.linalg.norm(line)
     if not abs(first - second) < gap < first + second:
         raise ModelError(f"links of {first:g} and {second:g} m do not meet over {gap:g} m")
     along = (gap**2 + first**2 - second**2) / (2.0 * gap)
-    across = side * math.sqrt(max(first**2 - along**2, 0.0))
+    across = side * sqrt(larger(first**2 - along**2, 0.0))
     unit = line / gap
     return np.asarray(start + along * unit + across * np.array([-unit[1], unit[0]]))

@@ -82,16 +82,17 @@ class Measure(ABC):
 
     def of(self, lanes: Lanes) -> Vector:
         """One value a design, over the configurations that were reached."""
-        values = np.where(lanes.reached, self.at(lanes), np.nan)
-        any_there = lanes.reached.any(axis=1)
-        found = np.full(len(values), np.nan)
-        for k in np.flatnonzero(any_there):
-            row = values[k][lanes.reached[k]]
-            if np.isnan(row).any():
-                continue
-            worst = row.max() if self.better == "smaller" else row.min()
-            found[k] = row.mean() if self.over == "mean" else worst
-        return found
+        values, reached = self.at(lanes), lanes.reached
+        counts = reached.sum(axis=1)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            # NaN at a configuration that was reached makes the whole design NaN.
+            if self.over == "mean":
+                found = np.where(reached, values, 0.0).sum(axis=1) / counts
+            elif self.better == "smaller":
+                found = np.where(reached, values, -np.inf).max(axis=1, initial=-np.inf)
+            else:
+                found = np.where(reached, values, np.inf).min(axis=1, initial=np.inf)
+        return np.asarray(np.where(counts > 0, found, np.nan))
 
     def signed(self, values: Array) -> Array:
         """The values so that smaller is better."""

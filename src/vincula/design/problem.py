@@ -184,10 +184,10 @@ class DesignProblem:
         return Judged(table, objectives, broken, self.signs, doubtful)
 
     def _relations(self, table: Matrix, broken: Matrix) -> None:
-        rows = [self.space.named(row) for row in table]
+        columns = self.space.columns(table)
         for k, constraint in enumerate(self.constraints):
             if isinstance(constraint, Relation):
-                broken[:, len(OWN) + k] = constraint.of_variables(rows)
+                broken[:, len(OWN) + k] = constraint.of_variables(columns)
         for values in self.space.parameters(table).values():
             broken[:, 0] = np.maximum(broken[:, 0], ~np.isfinite(values))
 

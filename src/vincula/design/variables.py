@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from vincula.arrays import Matrix, Vector
+from vincula.design.functions import of_many
 from vincula.errors import DuplicateNameError, ModelError, UnknownNameError, listing
 
 Tie = Callable[[Mapping[str, float]], float]
@@ -121,10 +122,14 @@ class DesignSpace:
             designs: One row a design, one column a variable.
         """
         found = {n: np.ascontiguousarray(designs[:, self.names.index(n)]) for n in self.direct}
-        rows = [self.named(row) for row in designs] if self.ties else []
+        columns = self.columns(designs)
         for name, tie in self.ties.items():
-            found[name] = np.array([_value(tie, row) for row in rows], dtype=float)
+            found[name] = of_many(tie, columns)
         return found
+
+    def columns(self, designs: Matrix) -> dict[str, Vector]:
+        """Values of many designs by variable."""
+        return {name: np.ascontiguousarray(designs[:, k]) for k, name in enumerate(self.names)}
 
     def unused(self) -> tuple[str, ...]:
         """Variables that change no parameter, found by moving each of them."""
@@ -153,14 +158,6 @@ class DesignSpace:
         if not np.isfinite(table).all():
             raise ModelError("designs hold numbers that are not finite")
         return table
-
-
-def _value(tie: Tie, row: Mapping[str, float]) -> float:
-    """The value of a tie; NaN, which no mechanism can be built from, where it has none."""
-    try:
-        return float(tie(row))
-    except (ArithmeticError, ValueError):
-        return math.nan
 
 
 def _differ(one: Vector, other: Vector) -> bool:

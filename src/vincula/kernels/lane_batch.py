@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 
 from vincula.arrays import Matrix, Vector
 from vincula.errors import VinculaError
-from vincula.kernels.evaluation import OPEN
+from vincula.kernels.evaluation import FAILED, OPEN
 from vincula.kernels.inputs import Batch
 from vincula.kernels.lane_path import LaneWriters
 from vincula.kernels.lane_poses import poses_in_lanes
+from vincula.kernels.layouts import spectra_layout
 from vincula.kernels.one_by_one import Reasons, evaluate_one_by_one
 from vincula.kernels.plans import Plan
 from vincula.kernels.quantities import quaternion_places
 from vincula.kernels.reference_path import Arrays
+from vincula.kernels.traced_geometry import REFUSED, UNKNOWN
 from vincula.kernels.variants import Variants
 from vincula.mechanism.mechanism import Mechanism
 
@@ -41,7 +43,7 @@ def evaluate_in_lanes(
         reasons: Where reasons go.
         threads: Threads to use.
     """
-    values, constants = geometry(writers, variants, batch)
+    values, constants, refused = geometry(writers, variants, batch, threads)
     unknown, opened = writers.evaluate(values, constants, arrays, threads)
     write_places(writers, values, constants, arrays)
     for lanes in (unknown, opened):
@@ -53,7 +55,8 @@ def evaluate_in_lanes(
     arrays["status"][opened] = OPEN
     if "configuration" in arrays and len(unknown):
         arrays["configuration"][unknown] = np.nan
-    evaluate_one_by_one(variants, plan, batch, arrays, unknown.tolist(), reasons)
+    arrays["status"][refused] = FAILED
+    evaluate_one_by_one(variants, plan, batch, arrays, unknown[~refused[unknown]].tolist(), reasons)
 
 
 def write_places(writers: LaneWriters, values: Matrix, constants: Matrix | None, arrays: Arrays) -> None:
@@ -65,25 +68,47 @@ def write_places(writers: LaneWriters, values: Matrix, constants: Matrix | None,
             arrays["reference.pose"][...] = poses_in_lanes(writers.path.program, values, constants)
 
 
-def geometry(writers: LaneWriters, variants: Variants, batch: Batch) -> tuple[Matrix, Matrix | None]:
-    """Values of all lanes, and constants where dimensions differ; NaN in lanes that cannot be built."""
+def geometry(
+    writers: LaneWriters, variants: Variants, batch: Batch, threads: int
+) -> tuple[Matrix, Matrix | None, NDArray[np.bool_]]:
+    """Values of all lanes, and constants where dimensions differ; NaN in lanes that cannot be built.
+
+    Returns:
+        Values; constants; lanes of which it is certain that nothing can be built.
+    """
     home = variants.nominal.home.flat
+    nothing = np.zeros(batch.lanes, dtype=bool)
+    values = batch.values
+    if values is None:
+        values = np.broadcast_to(home, (batch.lanes, len(home)))
     if not batch.parameters:
-        given = np.broadcast_to(home, (batch.lanes, len(home))) if batch.values is None else batch.values
-        return given, None
-    program = writers.path.program
-    values = np.empty((batch.lanes, len(home))) if batch.values is None else batch.values
-    constants = np.full((batch.lanes, len(program.constants)), np.nan)
+        return values, None, nothing
+    constants, known = variants.constants("spectra", spectra_layout(writers.path), batch.parameters, threads)
+    left = np.flatnonzero(known == UNKNOWN)
+    if len(left):
+        values = np.array(values)
+        _one_by_one(writers, variants, batch, left, values, constants)
+    return values, constants, known == REFUSED
+
+
+def _one_by_one(
+    writers: LaneWriters,
+    variants: Variants,
+    batch: Batch,
+    lanes: NDArray[np.intp],
+    values: Matrix,
+    constants: Matrix,
+) -> None:
+    """Build variants that are not traced."""
     kept: dict[tuple[float, ...], tuple[Vector, Vector]] = {}
-    table = np.column_stack(list(batch.parameters.values()))
-    for lane in range(batch.lanes):
-        key = tuple(table[lane].tolist())
+    table = np.column_stack([column[lanes] for column in batch.parameters.values()])
+    for lane, row in zip(lanes, table, strict=True):
+        key = tuple(row.tolist())
         if key not in kept:
-            kept[key] = _one_geometry(writers, variants.tried(batch.parameters_at(lane)))
+            kept[key] = _one_geometry(writers, variants.tried(batch.parameters_at(int(lane))))
         constants[lane], own = kept[key]
         if batch.values is None:
             values[lane] = own
-    return values, constants
 
 
 def _one_geometry(writers: LaneWriters, variant: Mechanism | str) -> tuple[Vector, Vector]:

@@ -7,10 +7,17 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from inspect import Parameter, signature
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
+
+from vincula.arrays import Matrix, Vector
 from vincula.errors import ModelError, UnknownNameError, listing
 from vincula.mechanism.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from vincula.kernels.traced_geometry import LayOut, TracedGeometry
 
 Builder = Callable[..., Mechanism]
 """Makes a mechanism; its keyword arguments are the parameters, and all of them have defaults."""
@@ -30,6 +37,7 @@ class Variants:
         self.nominal, self.build = nominal, build
         self._kept: OrderedDict[tuple[tuple[str, float], ...], Mechanism] = OrderedDict()
         self._structure = _structure(nominal)
+        self._traced: dict[tuple[str, ...], TracedGeometry] = {}
 
     @cached_property
     def defaults(self) -> Mapping[str, float]:
@@ -69,6 +77,25 @@ class Variants:
         if isinstance(found, str):
             raise ModelError(found)
         return found
+
+    def constants(
+        self, program: str, lay_out: LayOut, parameters: Mapping[str, Vector], threads: int | None = None
+    ) -> tuple[Matrix, NDArray[np.uint8]]:
+        """Constants of a program for many sets of parameters; see `TracedGeometry.constants`.
+
+        Args:
+            program: What the program is called: formulas are kept by this name.
+            lay_out: How it is laid out.
+            parameters: Values by name, one a set.
+            threads: Threads to use; None for one a core.
+        """
+        from vincula.kernels.traced_geometry import TracedGeometry
+
+        key = (program, *parameters)
+        if key not in self._traced:
+            build = getattr(self.build, "outline", self.build) or (lambda **_: self.nominal)
+            self._traced[key] = TracedGeometry(self.nominal, build, self.tried, lay_out, tuple(parameters))
+        return self._traced[key].constants(np.column_stack(list(parameters.values())), threads)
 
     def tried(self, values: Mapping[str, float]) -> Mechanism | str:
         """The mechanism with these parameter values, or why these values are no geometry.

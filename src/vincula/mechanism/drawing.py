@@ -241,10 +241,11 @@ class Drawing:
             vector = self.frame_pose(place.frame).rotation @ checked(place.xyz, what, shape)
         else:
             vector = checked(place, what, shape)
-        size = float(np.linalg.norm(vector))
+        size = np.linalg.norm(vector)
         if size < SMALLEST_DIRECTION:
             raise ModelError(f"{what} {vector.tolist()} has no direction: give a vector of length one")
-        return vector if abs(size - 1.0) < 1e-15 else vector / size
+        # A comparison of what may be rounding is no guard of traced numbers: they are always divided.
+        return vector if vector.dtype != object and abs(size - 1.0) < 1e-15 else vector / size
 
     def joint(self, drawn: DrawnJoint) -> Joint:
         """The resolved joint of a drawn one."""
@@ -262,7 +263,7 @@ class Drawing:
         elif drawn.type == "universal":
             one = self.direction(_given(drawn.axis, what, "axes"), f"{what}: first axis")
             two = self.direction(_given(drawn.second_axis, what, "axes"), f"{what}: second axis")
-            if float(np.linalg.norm(np.cross(one, two))) < SMALLEST_DIRECTION:
+            if np.linalg.norm(np.cross(one, two)) < SMALLEST_DIRECTION:
                 raise ModelError(f"{what}: the two axes of a universal joint are parallel")
             rotation = frame_with_z(one, two)
             second_axis = rotation.T @ two
@@ -314,7 +315,7 @@ class Drawing:
         if drawn.line is None:
             raise ModelError(f"{what}: a line contact needs `line`, the direction of the line")
         line = self.direction(drawn.line, f"{what}: line")
-        if abs(float(line @ normal)) > 1e-6:
+        if abs(line @ normal) > 1e-6:
             raise ModelError(
                 f"{what}: the line {line.tolist()} is not perpendicular to the normal {normal.tolist()}"
             )

@@ -36,6 +36,8 @@ def _checked_pose(what: str, pose: Pose) -> Pose:
     position = checked(pose.position, f"{what}: position", (None,))
     s = len(position)
     rotation = checked(pose.rotation, f"{what}: rotation", (s, s))
+    if rotation.dtype == object:
+        return Pose(rotation, position)
     error = float(np.abs(rotation.T @ rotation - np.eye(s)).max(initial=0.0))
     if error > ROTATION_ERROR or np.linalg.det(rotation) < 0.0:
         raise ModelError(
@@ -144,7 +146,7 @@ class Joint:
         object.__setattr__(self, "frame_on_first", first)
         object.__setattr__(self, "frame_on_second", second)
         axis = checked(self.second_axis, f"{what}: second axis", (3,))
-        if abs(float(np.linalg.norm(axis)) - 1.0) > ROTATION_ERROR:
+        if axis.dtype != object and abs(float(np.linalg.norm(axis)) - 1.0) > ROTATION_ERROR:
             raise ModelError(f"{what}: the second axis {axis.tolist()} is not a unit vector")
         object.__setattr__(self, "second_axis", axis)
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vincula.arrays import Matrix, Vector, frozen
+from vincula.arrays import Matrix, Vector, frozen, numbers
+from vincula.elementary import choice, is_less
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,8 +36,8 @@ class Pose:
     @staticmethod
     def at(position: Sequence[float] | Vector, rotation: Matrix | None = None) -> Pose:
         """A pose at a position, with identity rotation unless one is given."""
-        point = np.array(position, dtype=float)
-        turn = np.eye(len(point)) if rotation is None else np.array(rotation, dtype=float)
+        point = numbers(position)
+        turn = np.eye(len(point)) if rotation is None else numbers(rotation)
         return Pose(frozen(turn), frozen(point))
 
     @staticmethod
@@ -124,10 +125,20 @@ def frame_with_z(axis: Vector, near_x: Vector | None = None) -> Matrix:
     aligned with `axis`.  Signs and zeros of `axis` are kept exactly, so a frame along a ground axis
     has exact zeros and ones.
     """
-    z = np.asarray(axis, dtype=float)
+    z = numbers(axis)
     if near_x is None:
-        near_x = np.zeros(3)
-        near_x[int(np.argmin(np.abs(z)))] = 1.0
+        near_x = _least_aligned(z)
     x = near_x - (near_x @ z) * z
     x = x / np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
+
+
+def _least_aligned(z: Vector) -> Vector:
+    """The ground axis with the smallest component in z, the first of equal ones."""
+    if z.dtype != object:
+        return np.asarray(np.eye(3)[int(np.argmin(np.abs(z)))])
+    a, b, c = (abs(x) for x in z)
+    second = choice(is_less(b, a), 1.0, 0.0)
+    least = choice(second, b, a)
+    third = choice(is_less(c, least), 1.0, 0.0)
+    return np.array([choice(third, 0.0, 1.0 - second), choice(third, 0.0, second), third])

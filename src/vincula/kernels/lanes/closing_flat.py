@@ -57,21 +57,26 @@ class _Part:
     signs: dict[int, int]
 
 
-def closing_arrays(mechanism: Mechanism, given: Given) -> ClosingArrays:
+def closing_arrays(mechanism: Mechanism, given: Given, *, general: bool = False) -> ClosingArrays:
     """The flat arrays of a mechanism's closing.
+
+    Args:
+        mechanism: The mechanism.
+        given: What is given.
+        general: Whether variants of other dimensions are to have the same `code` and `plan`.
 
     Raises:
         Unsupported: Something that lanes do not close.
     """
-    return _Assembly(mechanism, given).arrays()
+    return _Assembly(mechanism, given, general).arrays()
 
 
 class _Assembly:
     """Places frames, collects unknowns and parts, then lays out the tables."""
 
-    def __init__(self, mechanism: Mechanism, given: Given) -> None:
+    def __init__(self, mechanism: Mechanism, given: Given, general: bool) -> None:
         self.mechanism = mechanism
-        self.builder = Builder(mechanism, general=False)
+        self.builder = Builder(mechanism, general)
         self.forest = forest_of(mechanism, given)
         self.plan = [0] * c.HEADER
         self.unknowns = Unknowns(self.builder, self.forest.held)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vincula.arrays import Vector
+from vincula.elementary import hypot
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.flatten import Builder, Unsupported
 from vincula.mechanism.parts import ContactPart, Coupling, Joint
@@ -235,7 +234,7 @@ def _joint_gap(builder: Builder, joint: Joint) -> list[int]:
 
 def _beyond(builder: Builder, axis: Vector) -> int:
     """An axis of B, the cosine of its drawn angle to z of A, and one over the sine."""
-    return builder.constant(*axis, axis[2], 1.0 / math.hypot(axis[0], axis[1]))
+    return builder.constant(*axis, axis[2], 1.0 / hypot(axis[0], axis[1]))
 
 
 def _contact_gap(builder: Builder, contact: ContactPart) -> list[int]:

@@ -113,7 +113,7 @@ class Builder:
 
     def constant(self, *values: float) -> int:
         """Index of the first of new constants."""
-        self.constants.extend(float(v) for v in values)
+        self.constants.extend(values)
         return len(self.constants) - len(values)
 
     def table(self, entry: int, numbers: Sequence[int]) -> None:
@@ -200,14 +200,14 @@ class Builder:
         """
         source, inverse = self.carrier[body]
         relative = inverse @ pose
-        turned = not np.array_equal(relative.rotation, np.eye(len(relative.rotation)))
-        moved = bool(relative.position.any())
-        if not (turned or moved or fresh or self.general) and source >= 0:
+        turned = self.general or not np.array_equal(relative.rotation, np.eye(len(relative.rotation)))
+        moved = self.general or bool(relative.position.any())
+        if not (turned or moved or fresh) and source >= 0:
             return source
         rotation, position = embedded(relative, self.length)
         first = self.constant(*rotation.ravel(), *position)
         target = self.slot(12)
-        flags = 3 if self.general else int(turned) + 2 * int(moved)
+        flags = int(turned) + 2 * int(moved)
         self.tape.append((t.PLACE, target, source, first, 0, 1, flags, 0))
         return target
 
@@ -266,6 +266,6 @@ def embedded(pose: Pose, length: float) -> tuple[Vector, Vector]:
     """Rotation (3 x 3) and position (in units of `length`) of a pose, one of the plane laid into space."""
     if len(pose.position) == 3:
         return pose.rotation, pose.position / length
-    rotation = np.eye(3)
+    rotation = np.eye(3, dtype=pose.rotation.dtype)
     rotation[:2, :2] = pose.rotation
     return rotation, np.array([*(pose.position / length), 0.0])

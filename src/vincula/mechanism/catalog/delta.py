@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from vincula.elementary import cos, sin, sqrt
 from vincula.errors import ModelError
 from vincula.mechanism.catalog.entry import Entry, Parameter
 from vincula.mechanism.catalog.shapes import THIRD, on_circle
@@ -19,15 +18,15 @@ def build(
     base_radius: float, platform_radius: float, arm: float, rod: float, width: float, angle: float
 ) -> Mechanism:
     """Platform below the base, symmetric pose; lengths in m, angle in rad."""
-    reach = base_radius + arm * math.cos(angle) - platform_radius
+    reach = base_radius + arm * cos(angle) - platform_radius
     if not rod > abs(reach):
         raise ModelError(f"rods of {rod:g} m do not bridge {abs(reach):g} m: make them longer")
-    drop = arm * math.sin(angle) + math.sqrt(rod**2 - reach**2)
+    drop = arm * sin(angle) + sqrt(rod**2 - reach**2)
     joints: list[DrawnJoint] = []
     for leg in (1, 2, 3):
         turn = (leg - 1) * THIRD
-        across = np.array([-math.sin(turn), math.cos(turn), 0.0])
-        elbow = on_circle(base_radius + arm * math.cos(angle), turn, -arm * math.sin(angle))
+        across = np.array([-sin(turn), cos(turn), 0.0])
+        elbow = on_circle(base_radius + arm * cos(angle), turn, -arm * sin(angle))
         wrist = on_circle(platform_radius, turn, -drop)
         joints.append(
             Revolute(f"a{leg}", "ground", f"arm{leg}", at=on_circle(base_radius, turn, 0.0), axis=across)

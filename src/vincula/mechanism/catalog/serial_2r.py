@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from vincula.elementary import cos, sin
 from vincula.mechanism.catalog.entry import Entry, Parameter
 from vincula.mechanism.drawing import Reference
 from vincula.mechanism.drawn_joints import Revolute
@@ -13,7 +12,7 @@ from vincula.weights import Weights
 
 def build(upper: float, fore: float, angle: float) -> Mechanism:
     """Upper arm along x, forearm turned by `angle` [rad]; lengths in m."""
-    hand = (upper + fore * math.cos(angle), fore * math.sin(angle))
+    hand = (upper + fore * cos(angle), fore * sin(angle))
     return Mechanism.planar(
         joints=[
             Revolute("shoulder", "ground", "upper_arm", at=(0, 0)),

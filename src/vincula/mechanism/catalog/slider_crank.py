@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from vincula.elementary import cos, sin, sqrt
 from vincula.errors import ModelError
 from vincula.mechanism.catalog.entry import Entry, Parameter
 from vincula.mechanism.drawing import Reference
@@ -16,12 +15,12 @@ from vincula.weights import Weights
 
 def build(crank: float, rod: float, angle: float) -> Mechanism:
     """Crank at the origin, slider on the x axis; lengths in m, angle in rad."""
-    pin = np.array([crank * math.cos(angle), crank * math.sin(angle)])
+    pin = np.array([crank * cos(angle), crank * sin(angle)])
     if not rod > abs(pin[1]):
         raise ModelError(
             f"a rod of {rod:g} m does not reach the slide {abs(pin[1]):g} m away: make it longer"
         )
-    slider = np.array([pin[0] + math.sqrt(rod**2 - pin[1] ** 2), 0.0])
+    slider = np.array([pin[0] + sqrt(rod**2 - pin[1] ** 2), 0.0])
     return Mechanism.planar(
         joints=[
             Revolute("o1", "ground", "crank", at=(0, 0)),
