@@ -79,7 +79,9 @@ class _Reader:
     def read(self, source: Source, chain: tuple[Path, ...]) -> Document:
         root = parse_xml(source, self._limits, self._report)
         if root.tag != "mujoco":
-            refuse_element(root, f"got <{root.tag[:40]}>, expected <mujoco>, the root of an MJCF file")
+            hint = "; load the file that includes this one" if root.tag == "mujocoinclude" else ""
+            expected = f"expected <mujoco>, the root of an MJCF file{hint}"
+            refuse_element(root, f"got <{root.tag[:40]}>, {expected}")
         document = Document(root, source.file)
         if source.path is not None:
             chain = (*chain, source.path.resolve())
@@ -140,7 +142,11 @@ class _Reader:
         except (OSError, RuntimeError, ValueError):
             refuse_element(element, f"got {shown(named)}, expected the path of a file beside the model")
         if not any(resolved.is_relative_to(root) for root in self._roots):
-            refuse_element(element, f"{shown(named)} lies outside the folder of the model: it is not opened")
+            refuse_element(
+                element,
+                f"{shown(named)} lies outside the folder of the model: it is not opened "
+                "(--package-dir names further folders that may be)",
+            )
         try:
             data = read_bytes(resolved, self._limits.xml_bytes)
         except FileError as error:
