@@ -154,7 +154,7 @@ class RobotDraft:
             tree = self._tree(root)
             self.problems.refuse_if_any()
         self._note_parents()
-        names = {link: link for link in self.links} | {root: GROUND}
+        names = self._names(root)
         poses = self._poses(root, tree)
         joints = [joint.resolved(joint.closure, names) for joint in self.joints]
         frames = [Frame(f.name, names.get(f.body, f.body), f.pose) for f in self.frames]
@@ -164,7 +164,7 @@ class RobotDraft:
         try:
             mechanism = Mechanism(
                 space=SPATIAL,
-                bodies=tuple(Body(link, poses[link]) for link in self.links if link != root),
+                bodies=tuple(Body(names[link], poses[link]) for link in self.links if link != root),
                 joints=tuple(joints),
                 couplings=tuple(self.couplings),
                 drives=tuple(self.drives),
@@ -177,6 +177,17 @@ class RobotDraft:
         except ModelError as error:
             self.problems.add(Place(self.file), str(error))
             self.problems.refuse()
+
+    def _names(self, root: str) -> dict[str, str]:
+        """Names of the bodies: those of the links, but that the root is the ground, and nothing else is."""
+        names = {link: link for link in self.links} | {root: GROUND}
+        if root != GROUND and GROUND in names:
+            other = f"{GROUND}_link"
+            while other in names:
+                other += "'"
+            names[GROUND] = other
+            self.notes.append(f"the link {GROUND} is called {other} here: {GROUND} is the fixed body")
+        return names
 
     def _check_names(self) -> None:
         seen: dict[str, Place] = {}

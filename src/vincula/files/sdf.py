@@ -23,6 +23,7 @@ from vincula.files.sdf_joints import KNOWN_IN_JOINTS, SdfJoints, end_of
 from vincula.files.sdf_models import only_model
 from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
+from vincula.files.unclosed import note_unclosed_ends
 from vincula.files.xmltree import Element, parse_xml
 from vincula.files.xmlvalues import TypedDigits, XmlValues
 from vincula.mechanism.mechanism import Mechanism
@@ -116,6 +117,7 @@ class _SdfReader:
             first = next(iter(self.draft.links.values()))
             self.problems.add(first, f"more than {limits.bodies} links or {limits.joints} joints")
         self.draft.digits_length, self.draft.digits_angle = self.digits.length, self.digits.angle
+        note_unclosed_ends(self.draft, "An overlay (a native file with base:) does: closures, frames: [{}]")
         mechanism = self.draft.mechanism()
         for note in self.draft.notes:
             self.report.note(note)
@@ -146,6 +148,7 @@ class _SdfReader:
         reader = SdfJoints(self.frames, self.draft, self.values, self.report, self.version)
         for joint in joints:
             reader.read(joint)
+        reader.couple()
         self.unknown += reader.unknown
         for element in model.children:
             self._other(element)

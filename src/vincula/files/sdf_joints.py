@@ -12,6 +12,7 @@ from vincula.files.problems import shown
 from vincula.files.report import LoadReport
 from vincula.files.robot_graph import WORLD, DraftJoint, RobotDraft
 from vincula.files.sdf_frames import SdfFrames
+from vincula.files.sdf_gearbox import GEARBOX, PARTS, read_gearbox
 from vincula.files.xmltree import Element
 from vincula.files.xmlvalues import XmlValues
 from vincula.mechanism.parts import SMALLEST_DIRECTION, Coupling
@@ -41,6 +42,7 @@ _JOINT_PARTS: Final = {
 }
 _READ: Final = (
     "parent", "child", "pose", "axis", "axis2", "thread_pitch", "screw_thread_pitch", "drake:mimic",
+    *PARTS,
 )  # fmt: skip
 
 _AXIS_PARTS: Final = {
@@ -99,11 +101,19 @@ class SdfJoints:
         self.frames, self.draft, self.values, self.report = frames, draft, values, report
         self.version, self.closing = version, closing
         self.unknown: list[Element] = []
+        self._gearboxes: list[Element] = []
+
+    def couple(self) -> None:
+        """Add the gearboxes, once every joint has been read."""
+        for element in self._gearboxes:
+            axes = self._axes(element, GEARBOX, Pose.identity(3))
+            if axes is not None:
+                read_gearbox(element, (axes[0], axes[1]), self.frames, self.draft, self.values, self.report)
 
     def read(self, element: Element) -> None:
         """Add one `<joint>`."""
         written = element.get("type", "")
-        if written not in TYPES:
+        if written not in (*TYPES, GEARBOX):
             self._refuse_type(element, written)
             return
         self._record_parts(element)
@@ -117,6 +127,9 @@ class SdfJoints:
         if not (parent and child):
             return
         placed = self._joint_frames(element.name, parent, child)
+        if written == GEARBOX:
+            self._gearboxes.append(element)
+            return
         axes = self._axes(element, TYPES[written], placed[1])
         if axes is None:
             return
@@ -147,13 +160,6 @@ class SdfJoints:
                     self.report.ignored(part.tag, joint.name, reasons[part.tag], of=part)
 
     def _refuse_type(self, element: Element, written: str) -> None:
-        if written == "gearbox":
-            self.values.problems.add(
-                element.place,
-                "a gearbox joint cannot be read: write its ratio as a <mimic> of one of its joints",
-                unsupported=True,
-            )
-            return
         self.values.problems.add(
             element.place, got=f"joint type {shown(written)}", expected="a joint type", name=written,
             choices=TYPES,
@@ -211,7 +217,8 @@ class SdfJoints:
 
     def _axes(self, element: Element, kind: str, on_child: Pose) -> list[Vector] | None:
         """Unit axes in the joint frame; None after a problem."""
-        wanted = {"fixed": (), "spherical": (), "universal": ("axis", "axis2")}.get(kind, ("axis",))
+        both = ("axis", "axis2")
+        wanted = {"fixed": (), "spherical": (), "universal": both, GEARBOX: both}.get(kind, ("axis",))
         axes: list[Vector] = []
         for tag in wanted:
             found = next(element.find_all(tag), None)
@@ -224,7 +231,7 @@ class SdfJoints:
             if axis is None:
                 return None
             axes.append(self._in_joint(element.name, found, xyz, axis))
-        if len(axes) == 2 and float(np.linalg.norm(np.cross(axes[0], axes[1]))) < SMALLEST_DIRECTION:
+        if kind == "universal" and float(np.linalg.norm(np.cross(axes[0], axes[1]))) < SMALLEST_DIRECTION:
             self.values.problems.add(element.place, "the two axes of a universal joint are parallel")
             return None
         return axes

@@ -21,6 +21,7 @@ from vincula.files.report import LoadReport
 from vincula.files.robot_graph import DraftJoint, RobotDraft
 from vincula.files.snapping import Snapping
 from vincula.files.source import Source, open_source
+from vincula.files.unclosed import note_unclosed_ends
 from vincula.files.urdf_motors import read_transmission
 from vincula.files.urdf_places import origin
 from vincula.files.xmltree import Element, parse_xml
@@ -37,8 +38,9 @@ TYPES: Final = {
     "fixed": "fixed",
     "floating": "free",
     "planar": "planar",
+    "spherical": "spherical",
 }
-"""Joint types of URDF and ours."""
+"""Joint types of URDF and ours; spherical is an extension of Bullet's reader."""
 
 _WITHOUT_KINEMATICS: Final = {
     "material": "colours are no part of a mechanism",
@@ -149,6 +151,7 @@ class UrdfReader:
                 Place(self.draft.file), f"more than {self.limits.bodies} links or {self.limits.joints} joints"
             )
         self.draft.digits_length, self.draft.digits_angle = self.digits.length, self.digits.angle
+        note_unclosed_ends(self.draft, "A side file does: closed_loop: [[{}]], type: [3d], or 6d")
         mechanism = self.draft.mechanism()
         for note in self.draft.notes:
             self.report.note(note)
@@ -207,7 +210,7 @@ class UrdfReader:
         self._mimic(element, name)
 
     def _axis(self, element: Element, written: str) -> Vector | None:
-        if written in ("fixed", "floating"):
+        if written in ("fixed", "floating", "spherical"):
             return None
         found = next(element.find_all("axis"), None)
         text = "1 0 0" if found is None else found.get("xyz", "1 0 0")

@@ -65,6 +65,7 @@ def _loop(element: Element, draft: RobotDraft, values: XmlValues, report: LoadRe
         frames.add_joint(element, name, ends[1])
         reader = SdfJoints(frames, draft, values, report, _VERSION, closing=True)
         reader.read(element)
+        reader.couple()
         for part in reader.unknown:
             read_unknown(part, draft, values, report, KNOWN_IN_JOINTS["joint"])
 

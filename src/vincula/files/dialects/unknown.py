@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _WORDS: Final = re.compile(
     r"loop|clos|constrain|coupl|mimic|joint|passive|gear|weld|connect|equality|tendon|transmission|parallel"
-    r"|actuat|motor|rolling|pulley|linkage|predecessor|successor|parent|child",
+    r"|actuat|motor|rolling(?!_friction)|pulley|linkage|predecessor|successor|parent|child",
     re.IGNORECASE,
 )
 

@@ -10,6 +10,8 @@
 A coupling relates the joints on the two ways down from the nearest common ancestor of both links: ratio
 times the sum over the predecessor's way is the sum over the successor's.
 
+The exporter ACDC4Robot writes `<predecessor name="...">` and `<sucessor name="...">`, which is read as meant.
+
 Older files write `<constraint type="position">` for a point that coincides and `<constraint type="rolling">`
 with a ratio for a coupling; a ratio that is missing is 1.  An attribute `independent` of a joint chooses
 coordinates, not motors; it is not used.
@@ -19,7 +21,7 @@ Source: src/Urdf/constraint.cpp and src/Dynamics/ClusterTreeParsing.cpp of ROAM-
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -34,16 +36,20 @@ from vincula.mechanism.parts import Coupling
 if TYPE_CHECKING:
     from vincula.files.robot_graph import DraftJoint, RobotDraft
 
+_MISSPELLED: Final = "sucessor"
+
 
 def read_loop(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
     """Add one `<loop>` to the draft."""
-    values.only(element, ("predecessor", "successor", "axis", "limit", "dynamics"))
+    second_end = _MISSPELLED if any(element.find_all(_MISSPELLED)) else "successor"
+    values.only(element, ("predecessor", second_end, "axis", "limit", "dynamics"))
     kind = loop_type(element, values)
     values.name(element)
-    ends = [only_child(element, tag, values) for tag in ("predecessor", "successor")]
+    ends = [only_child(element, tag, values) for tag in ("predecessor", second_end)]
     if ends[0] is None or ends[1] is None or not kind:
         return
-    links = [link_named(end, draft, values) for end in ends if end is not None]
+    called = "name" if all(end and "name" in end.attributes for end in ends) else "link"
+    links = [link_named(end, draft, values, called) for end in ends if end is not None]
     poses = [origin(end, values) for end in ends if end is not None]
     axis = second = None
     found = list(element.find_all("axis"))

@@ -1,0 +1,82 @@
+"""What other programs write differently is read as they mean it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.files.conventions import four_bar
+from tests.files.conventions.test_conventions import urdf
+
+import vincula as vc
+from vincula.files.load import load_with_report
+
+LOOP = """<loop name="o3" type="revolute">
+  <predecessor {key}="coupler"><origin xyz="2 1 0" rpy="0 0 0"/></predecessor>
+  <{second} {key}="rocker"><origin xyz="-1 2 0" rpy="0 0 0"/></{second}>
+  <axis xyz="0 0 1"/></loop>"""
+
+
+def loaded(folder: Path, inside: str, name: str = "robot.urdf") -> vc.Mechanism:
+    path = folder / name
+    path.write_text(inside if name.endswith(".sdf") else urdf(inside), encoding="utf-8")
+    return load_with_report(path)[0]
+
+
+def test_loops_as_acdc4robot_spells_them(tmp_path: Path) -> None:
+    """`name` for `link`, and an end called `sucessor`."""
+    as_meant = loaded(tmp_path, four_bar.TREE + LOOP.format(key="link", second="successor"))
+    as_spelt = loaded(tmp_path, four_bar.TREE + LOOP.format(key="name", second="sucessor"))
+    for robot in (as_meant, as_spelt):
+        (loop,) = [joint for joint in robot.joints if joint.closure]
+        assert (loop.name, loop.first, loop.second) == ("o3", "coupler", "rocker")
+        assert robot.close(near=robot.home).residual < 1e-12
+    speeds = [
+        vc.kinematic_ellipsoid(
+            robot.with_reference("coupler").with_active(["o1"]).linearize(), vc.Weights()
+        ).efficiencies
+        for robot in (as_meant, as_spelt)
+    ]
+    assert speeds[0] == pytest.approx(speeds[1], rel=1e-14)
+
+
+@pytest.mark.parametrize("second", ["succesor", "successors"])
+def test_other_spellings_are_refused(second: str, tmp_path: Path) -> None:
+    with pytest.raises(vc.FileError, match="did you mean 'successor'"):
+        loaded(tmp_path, four_bar.TREE + LOOP.format(key="link", second=second))
+
+
+def test_a_spherical_joint_of_urdf_is_a_ball(tmp_path: Path) -> None:
+    ball = (
+        '<link name="a"/><link name="b"/><joint name="s" type="spherical"><parent link="a"/>'
+        '<child link="b"/><origin xyz="0 0 1"/></joint>'
+    )
+    robot = loaded(tmp_path, ball)
+    assert robot.joint["s"].type == "spherical"
+    assert robot.active == ()
+
+
+def test_a_link_called_ground_that_is_not_the_root_has_another_name(tmp_path: Path) -> None:
+    inside = (
+        '<link name="world"/><link name="ground"/><link name="ground_link"/>'
+        '<joint name="f" type="fixed"><parent link="world"/><child link="ground"/>'
+        '<origin xyz="0 0 2"/></joint>'
+        '<joint name="j" type="continuous"><parent link="ground"/><child link="ground_link"/></joint>'
+    )
+    robot = loaded(tmp_path, inside)
+    assert [body.name for body in robot.bodies] == ["ground_link'", "ground_link"]
+    assert (robot.joint["j"].first, robot.joint["j"].second) == ("ground_link'", "ground_link")
+    assert robot.body_poses(robot.home)["ground_link"].position == pytest.approx([0.0, 0.0, 2.0])
+    _, report = load_with_report(tmp_path / "robot.urdf")
+    assert any("the link ground is called ground_link' here" in note for note in report.notes)
+
+
+def test_friction_of_rolling_is_no_rolling_contact(tmp_path: Path) -> None:
+    text = four_bar.SDF_GRAPH.replace(
+        '<link name="coupler">',
+        '<link name="coupler"><contact><rolling_friction>0.1</rolling_friction></contact>',
+    )
+    assert "rolling_friction" in text
+    assert len(loaded(tmp_path, text, "robot.sdf").joints) == len(
+        loaded(tmp_path, four_bar.SDF_GRAPH, "robot.sdf").joints
+    )
