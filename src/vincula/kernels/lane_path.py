@@ -6,9 +6,7 @@ singular and the doubtful ones among them, are handed back.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import find_spec
@@ -22,6 +20,7 @@ from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quan
 from vincula.arrays import Matrix
 from vincula.errors import MissingExtraError, VinculaError
 from vincula.kernels.lane_quantities import Listing, Writer, writer_of
+from vincula.kernels.lanes.threads import pool
 from vincula.kernels.plans import model_without_numbers
 from vincula.kernels.quantities import Quantity
 from vincula.kernels.reference_path import Arrays
@@ -142,7 +141,7 @@ class LaneWriters:
 
         starts = range(0, count, BLOCK)
         if threads > 1 and len(starts) > 1:
-            for _ in _pool(threads).map(block, starts):
+            for _ in pool(threads).map(block, starts):
                 pass
         else:
             for first in starts:
@@ -194,16 +193,6 @@ def refuse_without_numba() -> None:
     """
     if not numba_is_installed():
         raise MissingExtraError("numba", "fast", "path='lanes'")
-
-
-@lru_cache(maxsize=8)
-def _pool(threads: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(threads, thread_name_prefix="vincula-batch")
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
 def empty_arrays(quantities: Iterable[Quantity], lanes: int) -> dict[str, NDArray[Any]]:

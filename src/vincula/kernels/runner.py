@@ -15,11 +15,11 @@ from vincula.kernels.lane_closing import SingleClosing, closed_start, evaluate_c
 from vincula.kernels.lane_path import (
     LanePath,
     LaneWriters,
-    cores,
     empty_arrays,
     lane_path,
     refuse_without_numba,
 )
+from vincula.kernels.lanes.threads import cores
 from vincula.kernels.one_by_one import Reasons, evaluate_one_by_one, reasons_for
 from vincula.kernels.plans import Plan
 from vincula.kernels.single import Single

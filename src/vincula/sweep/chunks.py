@@ -14,8 +14,8 @@ from vincula.errors import ModelError
 
 LARGEST_CHUNK: Final = 65_536
 """Points of a chunk, by default at most."""
-SMALLEST_CHUNK: Final = 256
-"""Points of a chunk, by default at least."""
+SMALLEST_CHUNK: Final = 1024
+"""Points of a chunk, by default at least: each costs about ten syncs of the disk, which take tens of ms."""
 MOST_CHUNKS: Final = 1_000_000
 """Most chunks of a sweep: each is a row of the ledger and a file for every array."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -11,6 +10,7 @@ from typing import Final
 
 from vincula.arrays import Matrix, Vector
 from vincula.errors import ModelError
+from vincula.kernels.lanes.threads import cores
 from vincula.sweep.work import Block, Work
 
 TICK: Final = 0.2
@@ -82,7 +82,7 @@ class ThreadExecutor(Executor):
 
     def __init__(self, work: Work, threads: int | None = None) -> None:
         self._work = work
-        self._threads = threads or usable_cores()
+        self._threads = threads or cores()
         self._pool = ThreadPoolExecutor(self._threads, thread_name_prefix="sweep")
         self._stopped = False
 
@@ -119,13 +119,6 @@ def _outcome(task: Task, future: Future[Block]) -> Outcome:
     if error is None:
         return Outcome(task, future.result())
     return Outcome(task, None, f"{type(error).__name__}: {error}")
-
-
-def usable_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
 
 
 def executor_for(

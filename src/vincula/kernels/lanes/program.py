@@ -9,11 +9,8 @@ reason, and `run` marks the configurations that the reference path must look at.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +23,7 @@ from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.flatten import Flat, Unsupported, flatten
 from vincula.kernels.lanes.metrics import doubt_constants, metric_constants
 from vincula.kernels.lanes.plan import Plan, make_plan, output_size
+from vincula.kernels.lanes.threads import cores, pool
 from vincula.model import LinearModel
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.weights import Weights
@@ -199,14 +197,14 @@ class LaneProgram:
         run = spectra_entry(width)
         base, given = self._geometry(constants)
         blocks = -(-len(values) // width)
-        count = max(1, min(threads or _cores(), blocks // SMALLEST_SHARE))
+        count = max(1, min(threads or cores(), blocks // SMALLEST_SHARE))
         rows = _rows(values)
         if count == 1:
             run(rows, self.code, given, base, want, 0, blocks, out)
             return
         ends = [blocks * k // count for k in range(count + 1)]
         futures = [
-            _pool(count).submit(run, rows, self.code, given, base, want, one, two, out)
+            pool(count).submit(run, rows, self.code, given, base, want, one, two, out)
             for one, two in pairwise(ends)
         ]
         for future in futures:
@@ -292,13 +290,3 @@ def _raw(out: Matrix, counts: SummaryCounts, n_a: int, d: int, want: int) -> Raw
 def _rows(array: Matrix) -> Any:
     """Contiguous and writable, as the kernels are compiled for."""
     return np.require(array, dtype=np.float64, requirements=["C", "W"])
-
-
-@lru_cache(maxsize=8)
-def _pool(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count, thread_name_prefix="vincula-lanes")
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)

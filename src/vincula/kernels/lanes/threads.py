@@ -27,10 +27,20 @@ def in_shares(work: Callable[[int, int], object], count: int, threads: int | Non
         work(0, count)
         return
     cuts = [count * k // shares for k in range(shares + 1)]
-    for _ in _pool(shares).map(work, cuts[:-1], cuts[1:]):
+    for _ in pool(shares).map(work, cuts[:-1], cuts[1:]):
         pass
 
 
 @lru_cache(maxsize=8)
-def _pool(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count, thread_name_prefix="vincula-shares")
+def pool(count: int) -> ThreadPoolExecutor:
+    """Threads that stay; tasks must not wait for tasks of the same pool.
+
+    Args:
+        count: How many.
+    """
+    return ThreadPoolExecutor(count, thread_name_prefix="vincula-lanes")
+
+
+if hasattr(os, "register_at_fork"):
+    # A forked process has the pools but none of their threads: whatever it handed them would wait for ever.
+    os.register_at_fork(after_in_child=pool.cache_clear)
