@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 from tests.files import rounded
+from tests.files.leaning import TEXTS, Leaning
 
+import vincula as vc
 from vincula.files.load import load, load_with_report
 from vincula.mechanism.mechanism import Mechanism
 
@@ -75,3 +77,73 @@ def test_parameters_used_as_angles(tmp_path: Path) -> None:
     _, report = load_with_report(path, snap=True)
     assert [told.split(" (")[0] for told in report.snapped] == ["1.57 means pi/2"]
     assert {one.mobility for one in _subject(load(path)).linearize().ledger.scenarios} == {0, 1}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("spherical", [False, True])
+@pytest.mark.parametrize("digits", [4, 6, 8])
+def test_axes_that_are_parallel_or_meet_but_for_rounding(
+    tmp_path: Path, name: str, spherical: bool, digits: int
+) -> None:
+    """As typed such a loop cannot be closed (URDF) or may be stuck (SDF); as meant it is a four-bar."""
+    path = tmp_path / name
+    path.write_text(TEXTS[name](Leaning(digits, seed=digits, spherical=spherical)))
+    typed = _subject(load(path))
+    if path.suffix == ".sdf":
+        assert {one.mobility for one in typed.linearize().ledger.scenarios} == {0, 1}
+        assert typed.linearize().ledger.decision("all").status == "doubtful"
+    elif digits < 8:
+        with pytest.raises(vc.ClosureError, match="cannot close"):
+            typed.close()
+    mechanism, report = load_with_report(path, snap=True)
+    meant = _subject(mechanism)
+    ledger = meant.linearize(meant.close()).ledger
+    assert ledger.summary.mobility == 1
+    assert ledger.decision("all").status == "certain"
+    assert 3 <= len(report.snapped) <= 9
+    word = "meeting" if spherical else "parallel"
+    assert any(f"means {word} ({path}" in told for told in report.snapped)
+
+
+def test_bodies_hardly_move_when_axes_are_put_right(tmp_path: Path) -> None:
+    for name, write in TEXTS.items():
+        for spherical in (False, True):
+            path = tmp_path / name
+            path.write_text(write(Leaning(6, seed=1, spherical=spherical)))
+            typed, meant = load(path).body_poses(), load(path, snap=True).body_poses()
+            for body, pose in typed.items():
+                assert abs(pose.position - meant[body].position).max() < 3e-5
+                assert abs(pose.rotation - meant[body].rotation).max() < 2e-5
+
+
+def test_axes_that_lean_on_purpose_are_left_alone(tmp_path: Path) -> None:
+    """A tilt of twenty units of the last digit is no rounding."""
+    path = tmp_path / "robot.urdf"
+    text = rounded.urdf("1.570796326794897").replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0.0020 1.0000"/>')
+    path.write_text(text)
+    mechanism, report = load_with_report(path, snap=True)
+    assert not [told for told in report.snapped if "axes" in told]
+    assert _subject(mechanism).linearize().ledger.summary.mobility == 0
+
+
+def test_numbers_of_dialects_are_snapped_too(tmp_path: Path) -> None:
+    links = "".join(f'<link name="{name}"/>' for name in "abc")
+    joints = "".join(
+        f'<joint name="{child}" type="continuous"><parent link="a"/><child link="{child}"/></joint>'
+        for child in "bc"
+    )
+    ball = (
+        '<drake:ball_constraint><drake:ball_constraint_body_A name="b"/>'
+        '<drake:ball_constraint_p_AP value="0 0.2598 0"/><drake:ball_constraint_body_B name="c"/>'
+        '<drake:ball_constraint_p_BQ value="0 0.25981 0"/></drake:ball_constraint>'
+    )
+    gazebo = (
+        '<gazebo><joint name="g" type="revolute"><parent>b</parent><child>c</child>'
+        "<pose>0 0 0 1.5708 0 0</pose><axis><xyz>0 0.8660 0.5</xyz></axis></joint></gazebo>"
+    )
+    path = tmp_path / "robot.urdf"
+    path.write_text(f'<robot name="r" xmlns:drake="d">{links}{joints}{ball}{gazebo}</robot>')
+    told = [one.split(" (")[0] for one in load_with_report(path, snap=True)[1].snapped]
+    assert "0.2598 means 0.25981" in told
+    assert "1.5708 means pi/2" in told
+    assert "0.8660 means sqrt(3/4)" in told

@@ -92,12 +92,18 @@ def load_with_report(
     for name in settings:
         if name not in loaded.parameters:
             raise UnknownNameError("parameter", name, loaded.parameters)
+    mechanism = loaded.mechanism
+    if snapping is not None:
+        from vincula.files.snapping_axes import snapped_axes
+
+        mechanism, changes = snapped_axes(mechanism, loaded.report.file)
+        snapping.found += changes
     if snapping is not None and snapping.found:
         note = f"numbers of the file were read as what they probably mean: {snapped_words(snapping.found)}"
         loaded.report.snapped += [str(snap) for snap in snapping.found]
         loaded.report.note(note)
-        return replace(loaded.mechanism, notes=(*loaded.mechanism.notes, note)), loaded.report
-    return loaded.mechanism, loaded.report
+        return replace(mechanism, notes=(*mechanism.notes, note)), loaded.report
+    return mechanism, loaded.report
 
 
 def declared_parameters(path: str | os.PathLike[str], *, limits: Limits = DEFAULT_LIMITS) -> tuple[str, ...]:

@@ -163,7 +163,10 @@ def _urdf_parts(element: Element) -> Iterator[tuple[str, list[Part]]]:
     if "quat_xyzw" in element.attributes:
         yield "quat_xyzw", [("quaternion", 4)]
     if "xyz" in element.attributes:
-        yield "xyz", [("direction", 3)] if element.tag == "axis" else [("length", 3)]
+        yield "xyz", [("direction", 3)] if element.tag.endswith("axis") else [("length", 3)]
+    if element.tag in _DRAKE and "value" in element.attributes:
+        yield "value", _DRAKE[element.tag]
+    yield from _sdf_parts(element)  # Gazebo's joints
 
 
 def _sdf_parts(element: Element) -> Iterator[tuple[str, list[Part]]]:
@@ -174,7 +177,19 @@ def _sdf_parts(element: Element) -> Iterator[tuple[str, list[Part]]]:
         yield "", [("length", 3), ("quaternion", 4)] if quaternion else [("length", 3), (angle, 3)]
     elif element.tag == "xyz" and element.parent is not None and element.parent.tag in ("axis", "axis2"):
         yield "", [("direction", 3)]
+    elif element.tag in _DRAKE and element.characters:
+        yield "", _DRAKE[element.tag]
 
+
+_DRAKE: Final[dict[str, list[Part]]] = {
+    **{
+        f"drake:{kind}_constraint_{point}": [("length", 3)]
+        for kind in ("ball", "distance")
+        for point in ("p_AP", "p_BQ")
+    },
+    "drake:distance_constraint_distance": [("length", 1)],
+}
+"""Tags of Drake that hold lengths: their text in SDF, their `value` in URDF."""
 
 _MJCF: Final[dict[str, list[Part]]] = {
     "pos": [("length", 3)],

@@ -83,7 +83,7 @@ def load_urdf(
         path: The file, or its text where it is open already.
         limits: How much the files may hold.
         beside: Side files (loops, SRDF); by default those found beside the file.
-        snapping: Replaces numbers of the file (not of side files) by what they mean.
+        snapping: Replaces numbers of the file by what they mean; side files hold none.
         packages: Where `package://` leads; by default to the packages of the environment.
 
     Returns:
