@@ -258,3 +258,37 @@ def test_bad_problems(how: dict[str, object], words: str) -> None:
 def test_crossed_bounds() -> None:
     with pytest.raises(vc.ModelError, match="crossed"):
         DesignVariable("near", 0.4, 0.2)
+
+
+def test_the_figure_shows_the_ellipsoids_before_and_after() -> None:
+    """What is drawn is the velocity ellipse of the mechanism itself, linearised by itself."""
+    pytest.importorskip("matplotlib")
+    found = small().optimize(seed=1, population=5, generations=1, polish=False, samples=0)
+    velocity, load, bars = vc.plot_design(found).axes
+    for line, design in zip(velocity.lines, (found.start, found.design), strict=True):
+        model = five_bar(*(0.2, *design)).linearize()
+        drawn = np.array(line.get_data())
+        for direction in ((1.0, 0.0), (0.0, 1.0), (0.6, 0.8)):
+            reach = vc.kinematic_ellipsoid(model, vc.Weights()).support((*direction, 0.0))
+            assert (np.array(direction) @ drawn).max() == pytest.approx(reach, rel=1e-3)
+    assert [text.get_text() for text in velocity.get_legend().get_texts()] == ["start", "best"]
+    assert load.get_xlabel() == "fx [N]"
+    assert len(bars.patches) == 4
+
+
+def test_rotations_are_drawn_where_nothing_translates() -> None:
+    from vincula.view.design_ellipsoids import sight, views_of
+
+    problem = vc.design_problem("ankle", path="reference")
+    seen = sight(problem, problem.space.start, "start", "black", "-")
+    assert seen is not None
+    assert views_of([seen]) == (("wx", "wy"), ("wx", "wz"))
+    apart = small(configurations=[[1.2, 1.2]], given="motors")
+    assert sight(apart, np.array([0.4, 0.25]), "start", "black", "-") is None
+
+
+def test_one_compromise_is_told_once() -> None:
+    from vincula.design.front import different
+
+    values = np.array([[1.0, 2.0], [1.0 + 1e-12, 2.0], [1.0, 3.0], [1.0, 2.0 - 1e-13]])
+    assert different(values).tolist() == [0, 2]

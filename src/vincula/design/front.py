@@ -12,6 +12,7 @@ from math import comb
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vincula.arrays import Matrix
 from vincula.design.asking import Asking, Progress
@@ -27,6 +28,8 @@ NAMES: Final[dict[Method, str]] = {"nsga2": "NSGA-II", "nsga3": "NSGA-III"}
 """Names of the methods in reports."""
 BOUNDLESS: Final = 720.0
 """What an infinite objective counts for a search; arcsinh of the largest double is 711."""
+SAME_DIGITS: Final = 9
+"""Objectives that agree to so many digits are equal."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +38,8 @@ class Front:
 
     Attributes:
         problem: The problem.
-        members: The designs that no evaluated design beats, by the first objective.
+        members: The designs that no evaluated design beats, by the first objective; one of each kind where
+            several have the same objectives.
         checked: Objectives of the members computed again, one by one, by the reference path.
         everything: Every design that was evaluated.
         counts: How many designs each constraint killed.
@@ -122,6 +126,7 @@ def front(
     able = able.part(np.sort(unique))
     members = able.part(pareto_front(-able.signed))
     members = members.part(np.argsort(members.objectives[:, 0], kind="stable"))
+    members = members.part(different(members.objectives))
     again = problem.by_reference().judge(members.designs).objectives
     counts = found.counted(problem.names_of_constraints)
     return Front(problem, members, again, found, counts, asking.evaluated, seed, method)
@@ -136,6 +141,20 @@ def searched(judged: Judged) -> Matrix:
         judged: A generation.
     """
     return np.clip(np.arcsinh(judged.signed), -BOUNDLESS, BOUNDLESS)
+
+
+def different(objectives: Matrix) -> NDArray[np.int_]:
+    """Rows that differ in some objective by more than rounding: one compromise is told once.
+
+    A variable that no objective depends on would else give one for each of its values.
+
+    Args:
+        objectives: designs x objectives.
+    """
+    seen: dict[tuple[str, ...], int] = {}
+    for row, values in enumerate(objectives):
+        seen.setdefault(tuple(f"{value:.{SAME_DIGITS}g}" for value in values), row)
+    return np.array(list(seen.values()), dtype=int)
 
 
 def _evolve(asking: Asking, method: Method, seed: int, population: int, generations: int) -> None:

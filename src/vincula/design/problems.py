@@ -10,7 +10,7 @@ import numpy as np
 
 from vincula.arrays import Matrix
 from vincula.design.capabilities import Force, Speed
-from vincula.design.constraints import NoSingularity
+from vincula.design.constraints import Bound, NoSingularity
 from vincula.design.linkages import ankle, finger, five_bar
 from vincula.design.measures import Index, SphereDistance
 from vincula.design.problem import DesignProblem
@@ -48,7 +48,10 @@ def stewart_unit_problem(**how: Any) -> DesignProblem:
 
 
 def five_bar_problem(**how: Any) -> DesignProblem:
-    """Link lengths of a symmetric five-bar: even in all directions, and fast, over a workspace."""
+    """Link lengths of a symmetric five-bar: even in all directions, and strong, over a workspace.
+
+    What is slow in its fastest direction is strong in its weakest one: the second objective is both.
+    """
     return DesignProblem(
         five_bar,
         [
@@ -56,7 +59,12 @@ def five_bar_problem(**how: Any) -> DesignProblem:
             DesignVariable("near", 0.1, 0.6, tolerance=1e-3, unit="m"),
             DesignVariable("far", 0.1, 0.8, tolerance=1e-3, unit="m"),
         ],
-        [Index(quantity="kinematic.condition:translation"), Index(quantity="kinematic.smallest")],
+        [
+            Index(quantity="kinematic.condition:translation", label="unevenness"),
+            Index(
+                quantity="kinematic.largest", sense="smaller", label="largest efficiency"
+            ),
+        ],
         constraints=[NoSingularity()],
         configurations=_turns(2, 0.3, 3),
         given="motors",
@@ -90,7 +98,10 @@ def delta_problem(**how: Any) -> DesignProblem:
 
 
 def finger_problem(**how: Any) -> DesignProblem:
-    """A four-bar gripper finger: the weakest squeeze of its tip over the stroke of the motor."""
+    """A four-bar gripper finger: the weakest squeeze of its tip over the stroke of the motor.
+
+    A finger that need not move squeezes as hard as one likes: its tip must move 3 cm a radian everywhere.
+    """
     return DesignProblem(
         finger,
         [
@@ -98,8 +109,11 @@ def finger_problem(**how: Any) -> DesignProblem:
             DesignVariable("coupler", 0.03, 0.09, tolerance=1e-4, unit="m"),
             DesignVariable("lever", 0.015, 0.05, tolerance=1e-4, unit="m"),
         ],
-        Force(direction=(1.0, 0.0, 0.0)),
-        constraints=[NoSingularity()],
+        Force(direction=(1.0, 0.0, 0.0), label="squeeze"),
+        constraints=[
+            NoSingularity(),
+            Bound(measure=Speed(direction=(1.0, 0.0, 0.0)), least=0.03, label="slow tip"),
+        ],
         configurations=_turns(1, 0.5, 7),
         given="motors",
         weights=Weights(),
@@ -114,7 +128,6 @@ def ankle_problem(**how: Any) -> DesignProblem:
         ankle,
         [
             DesignVariable("lever", 0.03, 0.09, unit="m"),
-            DesignVariable("width", 0.02, 0.07, unit="m"),
             DesignVariable("height", 0.12, 0.3, unit="m"),
         ],
         [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from vincula.design.landscape import Landscape
     from vincula.design.optimum import Optimum
     from vincula.design.problem import DesignProblem
+
+BETTER: Final = 1e-6
+"""Gain beside an optimum, in parts of the objective, from which on it is none."""
+LINES: Final = 24
+"""Compromises that the text shows."""
 
 
 def number(value: float) -> float | str | None:
@@ -166,10 +171,7 @@ def optimum_text(found: Optimum) -> str:
     ]
     for name, end in found.bounds.items():
         lines.append(f"  {name} is on its {end} bound: the best design may lie outside")
-    lines.append("  moved by 0.1 % and 1 % of its range, a variable changes the objective by")
-    for name, row in zip(problem.space.names, found.around.moved, strict=True):
-        changes = [_change(float(value), found.value) for value in (row[1], row[2], row[0], row[3])]
-        lines.append(f"    {name:20} {changes[0]}, {changes[1]} and {changes[2]}, {changes[3]}")
+    lines += _moved(found)
     if len(found.around.sampled):
         known = found.around.sampled[np.isfinite(found.around.sampled)]
         told = f"{100.0 * found.around.kept:.3g} % of {len(found.around.sampled)} stay feasible"
@@ -188,6 +190,21 @@ def optimum_text(found: Optimum) -> str:
     return "\n".join([*lines, *killed_text(found.counts)])
 
 
+def _moved(found: Optimum) -> list[str]:
+    """How flat the optimum is, as a table; and whether something beside it is better."""
+    heads = "  ".join(f"{100.0 * move:+10.3g} %" for move in MOVES)
+    lines = ["  change of the objective when a variable moves by so much of its range"]
+    lines.append(f"    {'':16}{heads}")
+    for name, row in zip(found.problem.space.names, found.around.moved, strict=True):
+        changes = "  ".join(f"{_change(float(value), found.value):>12}" for value in row)
+        lines.append(f"    {name:16}{changes}")
+    sign = float(found.problem.signs[0])
+    gain = np.nanmax(sign * (found.value - found.around.moved), initial=0.0)
+    if gain > BETTER * max(1.0, abs(found.value)):
+        lines.append("  one of these is better: the search ended too early, give it more generations")
+    return lines
+
+
 def front_text(found: Front) -> str:
     """A search for compromises in words: a numbered line each, best in the first objective first."""
     problem = found.problem
@@ -196,16 +213,21 @@ def front_text(found: Front) -> str:
     for letter, objective in zip(letters, problem.objectives, strict=True):
         lines.append(f"  {letter}  {objective.name} ({objective.better} is better, {objective.over})")
     lines.append("    no  " + "  ".join(f"{letter:>10}" for letter in letters))
-    members = zip(found.members.designs, found.members.objectives, strict=True)
-    for place, (design, values) in enumerate(members, start=1):
-        columns = "  ".join(f"{value:10.6g}" for value in values)
-        lines.append(f"  {place:4}  {columns}   {_designs(problem, design)}")
+    for k in _spread(len(found.members)):
+        columns = "  ".join(f"{value:10.6g}" for value in found.members.objectives[k])
+        lines.append(f"  {k + 1:4}  {columns}   {_designs(problem, found.members.designs[k])}")
+    if len(found.members) > LINES:
+        lines.append(f"  {len(found.members) - LINES} more between these: --json holds all")
     feasible = int(found.everything.feasible.sum())
-    lines.append(
-        f"  {found.evaluated} designs evaluated, {feasible} feasible; {NAMES[found.method]}, seed {found.seed}"
-    )
+    method = f"{NAMES[found.method]}, seed {found.seed}"
+    lines.append(f"  {found.evaluated} designs evaluated, {feasible} feasible; {method}")
     lines.append(f"  computed again one by one: largest difference {found.largest_difference:.1e}")
     return "\n".join([*lines, *killed_text(found.counts)])
+
+
+def _spread(count: int) -> list[int]:
+    """At most `LINES` of so many, evenly, both ends among them."""
+    return sorted({round(k) for k in np.linspace(0, count - 1, min(count, LINES))})
 
 
 def landscape_text(found: Landscape) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,15 +12,16 @@ from vincula.design.landscape import Landscape
 from vincula.design.measures import SphereDistance
 from vincula.design.optimum import Optimum
 from vincula.errors import DesignError, ModelError
-from vincula.view import layout
+from vincula.view import layout, style
+from vincula.view.design_ellipsoids import Sight, draw_sets, sight, views_of
 from vincula.view.plot import drawing_settings, need_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-BLUE, ORANGE, GREY = "#0072B2", "#D55E00", "#bbbbbb"
-"""Colours: what is feasible or best, what it is compared with, the rest."""
+BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#bbbbbb"
+"""Colours: what is feasible or best, what it is compared with, another one, the rest."""
 
 
 def plot_design(found: Optimum | Landscape | Front, *, width: float | None = None) -> Figure:
@@ -28,8 +29,9 @@ def plot_design(found: Optimum | Landscape | Front, *, width: float | None = Non
 
     Args:
         found: A landscape: the objective over one or two variables (the paper's Fig. 10 shows 1/cost, as
-            here), best design and start marked.  A front: the first two objectives.  An optimum: kinematic
-            efficiencies of the start and of the best design, and the objective around it.
+            here), best design and start marked.  A front: the first two objectives, and the ellipsoids of
+            the start and of both ends.  An optimum: ellipsoids and kinematic efficiencies of the start and of
+            the best design.  Ellipsoids are those at the middle configuration of the problem.
         width: Width of the figure [inch].
 
     Raises:
@@ -38,7 +40,7 @@ def plot_design(found: Optimum | Landscape | Front, *, width: float | None = Non
         DesignError: A landscape without a feasible design.
     """
     need_matplotlib()
-    paper = width or layout.COLUMN
+    paper = width or (layout.COLUMN if isinstance(found, Landscape) else layout.PAGE)
     with drawing_settings():
         if isinstance(found, Landscape):
             return _landscape(found, paper)
@@ -96,49 +98,84 @@ def _landscape(found: Landscape, paper: float) -> Figure:
 
 
 def _front(found: Front, paper: float) -> Figure:
-    one, two = found.problem.objectives[:2]
-    figure, axes = _figure(paper, 0.8 * paper)
+    """The first two objectives of all designs, and the ellipsoids of both ends of the front."""
+    problem = found.problem
+    one, two = problem.objectives[:2]
+    figure, (cloud, ellipses) = _panels(paper, 2)
     able = found.everything.part(np.flatnonzero(found.everything.feasible)).objectives
-    axes.plot(able[:, 0], able[:, 1], ".", color=GREY, markersize=2.0, label="evaluated")
+    cloud.plot(able[:, 0], able[:, 1], ".", color=GREY, markersize=2.0, label="evaluated")
     values = found.members.objectives
-    axes.plot(values[:, 0], values[:, 1], "o", color=BLUE, markersize=3.0, label="not beaten")
-    axes.set_xlabel(f"{one.name} ({one.better} is better)")
-    axes.set_ylabel(f"{two.name} ({two.better} is better)")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    cloud.plot(values[:, 0], values[:, 1], "o", color=BLUE, markersize=3.0, label="not beaten")
+    cloud.set_xlabel(f"{one.name} ({one.better} is better)")
+    cloud.set_ylabel(f"{two.name} ({two.better} is better)")
+    last = len(found.members) - 1
+    sights = [
+        sight(problem, problem.space.start, "start", ORANGE, "--"),
+        sight(problem, found.members.designs[0], "compromise 1", BLUE, "-"),
+        sight(problem, found.members.designs[last], f"compromise {last + 1}", GREEN, "-.") if last else None,
+    ]
+    _ellipses([ellipses], sights)
+    _legends(cloud, ellipses)
     return figure
 
 
 def _optimum(found: Optimum, paper: float) -> Figure:
-    """Efficiencies of both designs, at the first configuration, as bars on a logarithmic axis."""
+    """Ellipsoids of the start and of the best design at one configuration, and all their efficiencies."""
+    from matplotlib.ticker import LogLocator
+
     problem = found.problem
-    figure, axes = _figure(paper, 0.7 * paper)
-    for k, (design, label, colour) in enumerate(
-        ((found.start, "start", ORANGE), (found.design, "best", BLUE))
-    ):
-        values = _efficiencies(found, design)
+    figure, (first, second, bars) = _panels(paper, 3)
+    sights = [
+        sight(problem, found.start, "start", ORANGE, "--"),
+        sight(problem, found.design, "best", BLUE, "-"),
+    ]
+    _ellipses([first, second], sights)
+    known = [one for one in sights if one is not None]
+    for k, one in enumerate(known):
+        values = np.asarray(one.kinematic.finite)
         places = np.arange(len(values)) + 0.4 * k - 0.2
-        axes.bar(places, values, 0.38, color=colour, label=label)
-    axes.axhline(1.0, color="black", linewidth=0.5)
-    axes.set_yscale("log")
-    axes.set_ylabel("kinematic efficiencies")
-    axes.set_xlabel(f"{problem.name}: {problem.objectives[0].name}")
-    axes.set_xticks([])
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+        bars.bar(places, values, 0.38, color=one.colour, label=one.label)
+    smallest = min((float(v) for one in known for v in one.kinematic.finite), default=1.0)
+    if isinstance(problem.objectives[0], SphereDistance):
+        bars.axhline(1.0, color="black", linewidth=0.5)
+    bars.set_yscale("log")
+    bars.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    bars.yaxis.set_major_formatter(lambda value, _: style.power_text(value))
+    bars.yaxis.set_minor_formatter(lambda value, _: "")
+    bars.set_ylim(bottom=0.5 * smallest)
+    bars.set_xticks([])
+    bars.set_xlabel("finite ones, largest first")
+    bars.set_title("kinematic efficiencies", pad=4)
+    _legends(first)
     return figure
 
 
-def _efficiencies(found: Optimum, design: Vector) -> Vector:
-    """Finite kinematic efficiencies of one design; none where it cannot be built or is open."""
-    problem = found.problem
-    compiled = problem.compiled_for(problem.objectives[0].weights)
-    parameters: dict[str, Any] = problem.space.parameters(design[None, :])
-    places = None if problem.configurations is None else problem.configurations[:1]
-    result = compiled.evaluate(
-        places, ("kinematic.efficiencies",), given=problem.given, start=problem.start,
-        parameters=parameters, path=problem.path,
-    )  # fmt: skip
-    values = result["kinematic.efficiencies"][0]
-    return np.asarray(values[np.isfinite(values) & (values > 0.0)])
+def _ellipses(panels: list[Axes], sights: list[Sight | None]) -> None:
+    """Fill panels with ellipsoids; a panel says so where there is nothing to draw."""
+    known = [one for one in sights if one is not None]
+    if not known:
+        for axes in panels:
+            axes.text(0.5, 0.5, "does not close here", ha="center", transform=axes.transAxes)
+        return
+    for axes, components in zip(panels, views_of(known), strict=False):
+        draw_sets(axes, known, components)
+
+
+def _panels(paper: float, count: int) -> tuple[Figure, list[Axes]]:
+    """Square panels side by side, with room for labels and a legend."""
+    from matplotlib.figure import Figure
+
+    side = (paper - 0.1) / count - 0.62
+    tall = side + 0.95
+    figure = Figure(figsize=(paper, tall))
+    boxes = ((0.52 + k * (side + 0.62), 0.42, side, side) for k in range(count))
+    return figure, [figure.add_axes((x / paper, y / tall, w / paper, h / tall)) for x, y, w, h in boxes]
+
+
+def _legends(*panels: Axes) -> None:
+    for axes in panels:
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.07), ncols=3, frameon=False)
 
 
 def _scale(found: Landscape, k: int) -> float:

@@ -150,6 +150,14 @@ def note(shapes: Sequence[EllipsoidShape], planar: bool) -> str:
     return "; ".join(said) + "."
 
 
+def power_text(value: float) -> str:
+    """A number at a tick of a logarithmic axis: powers of ten with superscripts, others as they are."""
+    exponent = round(math.log10(value)) if value > 0.0 else 0
+    if value <= 0.0 or not math.isclose(value, 10.0**exponent) or -3 <= exponent <= 3:
+        return f"{value:g}"
+    return f"10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
 def _component(value: float) -> str:
     text = f"{value:.2f}"
     return "0" if float(text) == 0.0 else text.replace("-", "−")
