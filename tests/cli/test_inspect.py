@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from vincula.cli.inspection_page import SCREEN
 from vincula.mechanism.catalog.registry import MODULES, example
 
 FIVE_BAR = "example:five-bar"
@@ -139,7 +140,7 @@ def test_real_robots_fit_a_screen(
     monkeypatch.chdir(file.parent)
     monkeypatch.setenv("COLUMNS", str(columns))
     lines = run("inspect", file.name).stdout.splitlines()
-    assert len(lines) <= 41
+    assert len(lines) <= SCREEN
     assert max(map(len, lines)) <= columns
     assert run_json("inspect", file.name)["load"]["counts"]
 

@@ -11,7 +11,7 @@ from vincula.cli.page import Page, few, number, plural, point
 from vincula.errors import listing
 
 SCREEN: Final = 40
-"""Lines that a page should not exceed; tables are cut down to it, but not below FEWEST_ROWS."""
+"""Lines that a page should not exceed; tables and reasons are cut down to it, but notes never."""
 MOST_ROWS: Final = 10
 """Rows for joints and contacts before the rest is only counted; `--all` shows them."""
 FEWEST_ROWS: Final = 4
@@ -22,6 +22,7 @@ MOST_NAMES: Final = 3
 LABELS: Final = 20
 """Columns that the labels of the summary take."""
 
+_WHY: Final = " (--all says why)"
 _CONTENTS: Final = ("elements", "attributes", "values")
 
 Facts = Mapping[str, Any]
@@ -37,20 +38,27 @@ def inspection_page(facts: Facts, *, everything: bool = False) -> Page:
     if everything:
         return _page(facts, 10**9, 10**9, everything=True)
     page = _page(facts, MOST_ROWS, MOST_LOOPS)
-    if page.height > SCREEN:
-        page = _page(facts, MOST_ROWS, 1)
-    if page.height > SCREEN:
-        page = _page(facts, max(FEWEST_ROWS, MOST_ROWS - (page.height - SCREEN)), 1)
+    for reasons in (True, False):
+        if page.height > SCREEN:
+            page = _fitted(facts, reasons)
     return page
 
 
-def _page(facts: Facts, rows: int, loops: int, *, everything: bool = False) -> Page:
+def _fitted(facts: Facts, reasons: bool) -> Page:
+    """A page with one loop and as many rows as fit, of those that are shown at all."""
+    page = _page(facts, MOST_ROWS, 1, reasons=reasons)
+    over = page.height - SCREEN
+    fewest = FEWEST_ROWS if reasons else FEWEST_ROWS // 2
+    return page if over <= 0 else _page(facts, max(fewest, MOST_ROWS - over), 1, reasons=reasons)
+
+
+def _page(facts: Facts, rows: int, loops: int, *, reasons: bool = True, everything: bool = False) -> Page:
     page = Page()
     page.heading(facts["mechanism"], f"{facts['space']} mechanism from {facts['file']}")
     page.facts(_summary(facts, 10**9 if everything else page.width - LABELS))
     connections(page, facts, rows, everything=everything)
     _loops(page, facts, loops, 10**9 if everything else 2 * (page.width - 4))
-    _load(page, facts["load"], everything)
+    _load(page, facts["load"], everything, reasons=reasons)
     for note in facts["notes"]:
         page.sentence(note, "note:")
     _next_step(page, facts)
@@ -151,8 +159,8 @@ def _walk(loop: Facts, room: int) -> str:
     return with_bodies if len(with_bodies) <= room else few(loop["parts"], room)
 
 
-def _load(page: Page, load: Facts, everything: bool) -> None:
-    """What became of the elements of the file, in one line for what was used and one a reason."""
+def _load(page: Page, load: Facts, everything: bool, *, reasons: bool) -> None:
+    """What became of the elements of the file: a line for what was used, and one a reason or one in all."""
     if load["format"] == "example":
         return
     page.heading("Read from the file", f"format {load['format']}")
@@ -160,7 +168,7 @@ def _load(page: Page, load: Facts, everything: bool) -> None:
     page.facts(
         [
             ("used", ", ".join(used)),
-            *_reasons(load, everything),
+            *(_reasons(load, everything) if reasons else _without_reasons(load, 2 * (page.width - LABELS))),
             *(("note", n) for n in load["notes"]),
             ("in all", _contents_words(load["contents"])),
         ]
@@ -194,6 +202,17 @@ def _reasons(load: Facts, everything: bool) -> list[tuple[str, str]]:
             shown = f" ({', '.join(names)})" if few_enough else ""
             said.append(f"{sum(entry['count'] for entry in entries)} {kind}{shown}")
         texts.append((fate, f"{', '.join(said)}: {detail or 'no reason given'}"))
+    return texts
+
+
+def _without_reasons(load: Facts, room: int) -> list[tuple[str, str]]:
+    """How much was ignored and repaired, most of it first, where reasons would not fit a screen."""
+    texts = []
+    for fate in ("ignored", "repaired"):
+        counted = [(count[fate], kind) for kind, count in load["counts"].items() if count[fate]]
+        named = [f"{count} {kind}" for count, kind in sorted(counted, key=lambda pair: -pair[0])]
+        if named:
+            texts.append((fate, f"{few(named, room - len(_WHY))}{_WHY}"))
     return texts
 
 

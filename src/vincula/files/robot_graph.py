@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vincula.arrays import Vector
-from vincula.errors import ModelError
+from vincula.errors import ModelError, listing
 from vincula.files.problems import Place, Problems, shown
 from vincula.mechanism.joint_types import joint_type
 from vincula.mechanism.mechanism import Mechanism
@@ -101,6 +101,7 @@ class RobotDraft:
         passive: Joints marked as passive.
         digits_length: Largest half unit of a typed length [m].
         digits_angle: Largest half unit of a typed angle or direction [rad].
+        coupling_plugins: Plugins of a simulator that couple joints, which no reader loads.
         notes: Facts that the reader of a result must know.
         when_placed: What can be added only once every link has its drawn pose: called with the poses.
         ground: The link that is the ground; None for the one link that is nobody's child.
@@ -120,6 +121,7 @@ class RobotDraft:
     passive: set[str] = field(default_factory=set)
     digits_length: float = 0.0
     digits_angle: float = 0.0
+    coupling_plugins: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     when_placed: list[Callable[[Mapping[str, Pose]], None]] = field(default_factory=list)
     ground: str | None = None
@@ -154,6 +156,7 @@ class RobotDraft:
             tree = self._tree(root)
             self.problems.refuse_if_any()
         self._note_parents()
+        self._note_plugins()
         names = self._names(root)
         poses = self._poses(root, tree)
         joints = [joint.resolved(joint.closure, names) for joint in self.joints]
@@ -229,6 +232,13 @@ class RobotDraft:
                     f"link {link} is the child of {len(names)} joints ({', '.join(names)}): read as a closed "
                     "loop, which other readers of URDF files may not do"
                 )
+
+    def _note_plugins(self) -> None:
+        if self.coupling_plugins:
+            self.notes.append(
+                f"plugins that couple joints are not read: {listing(self.coupling_plugins, 3)}; "
+                "write <mimic> in the joints instead"
+            )
 
     def _tree_joints(self) -> list[DraftJoint]:
         return [j for j in self.joints if not j.closure]

@@ -41,7 +41,7 @@ def read_gazebo(element: Element, draft: RobotDraft, values: XmlValues, report: 
         elif part.tag == "plugin":
             report.ignored("plugin", part.name, "plugins are never loaded", of=part)
             if any(inner.tag in _COUPLING for inner in part.walk()):
-                report.note(f"the plugin {part.name} couples joints; write <mimic> in the joint instead")
+                draft.coupling_plugins.append(part.name)
         else:
             reference = element.attributes.get("reference", "")
             report.ignored(f"gazebo {part.tag}", reference, "simulator settings", of=part)
