@@ -6,6 +6,7 @@ import csv
 import itertools
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import vincula as vc
@@ -142,3 +143,30 @@ def test_efficiencies_keep_their_place_along_the_path(run_json, tmp_path: Path) 
     header, first = file.read_text().splitlines()[:2]
     assert header.endswith("margin,efficiency1,efficiency2")
     assert [float(x) for x in first.split(",")[-2:]] == pytest.approx(found[0])
+
+
+@pytest.mark.parametrize(("name", "to"), [("five-bar", "o1=-0.4,o5=0.3"), ("delta", "a1=0.3,a2=-0.1,a3=0.2")])
+def test_directions_are_carried_along_and_belong_together(
+    run_json, tmp_path: Path, name: str, to: str
+) -> None:
+    """At every point the mechanism makes of a motor direction its task direction times a root."""
+    file = tmp_path / "path.csv"
+    words = ("follow", f"example:{name}", "--to", to, "--steps", "20", "--csv", str(file), "--directions")
+    points = run_json(*words)["points"]
+    robot = vc.load(f"example:{name}")
+    for point in points:
+        model = robot.linearize(robot.configuration(point["configuration"]))
+        twist_from_rates = np.array(vc.analyze(model).to_dict()["maps"]["twist_from_rates"])
+        for value, motors, task in zip(
+            point["efficiencies"], point["motor_directions"], point["task_directions"], strict=True
+        ):
+            assert twist_from_rates @ motors == pytest.approx(np.sqrt(value) * np.array(task), abs=1e-9)
+    for before, after in itertools.pairwise(points):
+        for one, other in zip(before["motor_directions"], after["motor_directions"], strict=True):
+            assert np.dot(one, other) > 0.9
+    rows = list(csv.DictReader(file.read_text().splitlines()))
+    active = robot.active
+    for row, point in zip(rows, points, strict=True):
+        assert [float(row[f"motors1[{axis}]"]) for axis in active] == point["motor_directions"][0]
+        told = [float(row[f"task2[{c}]"]) for c in robot.space.twist_components]
+        assert told == point["task_directions"][1]

@@ -15,6 +15,7 @@ from vincula.cli.output import print_json, warnings_on_stderr
 from vincula.errors import FileError
 
 if TYPE_CHECKING:
+    from vincula.cli.follow_efficiencies import Axis
     from vincula.cli.subject import Subject
     from vincula.mechanism.following import Waypoint
     from vincula.mechanism.paths import Path
@@ -56,6 +57,8 @@ THROUGH: Final = ("platform", "authority", "internal", "all")
     help="Kinds of singularity to pass: the platform becomes free, motors lose authority, inner degeneracy.",
 )  # fmt: skip
 @click.option("--csv", "table", metavar="FILE.csv", help="Write every configuration as a row.")
+@click.option("--directions", is_flag=True,
+              help="Motor and task direction of every efficiency as columns of the table.")  # fmt: skip
 @click.option("--frames", metavar="FOLDER", help="Write a picture of every configuration (extra `plot`).")
 @click.option("--frame-format", type=click.Choice(["png", "svg"]), default="png", show_default=True,
               help="Format of the pictures.")  # fmt: skip
@@ -74,6 +77,7 @@ def follow_command(
     limits: bool,
     through: Sequence[str],
     table: str | None,
+    directions: bool,
     frames: str | None,
     frame_format: str,
     as_json: bool,
@@ -102,7 +106,7 @@ def follow_command(
             through=cast("list[SingularityKind]", list(chosen)),
         )
         if table is not None:
-            _write_table(subject, path, table)
+            _write_table(subject, path, table, directions=directions)
         if frames is not None:
             _write_frames(path, frames, frame_format)
     if as_json:
@@ -130,24 +134,48 @@ def _waypoints(
     return [point_or_pose(subject, "--pose", text, pose=True) for text in poses]
 
 
-def _write_table(subject: Subject, path: Path, file: str) -> None:
+def _write_table(subject: Subject, path: Path, file: str, *, directions: bool) -> None:
     """Joint values in the units of the file, a row a configuration."""
     from vincula.cli.close_page import configuration_of
-    from vincula.cli.follow_efficiencies import efficiencies_along
+    from vincula.cli.follow_efficiencies import axes_along
 
-    efficiencies = efficiencies_along(subject, path)
+    axes = axes_along(subject, path)
+    names = _direction_columns(subject, len(axes[0])) if directions else []
     try:
         with FilePath(file).open("w", newline="", encoding="utf-8") as stream:
             writer = csv.writer(stream)
             for k, point in enumerate(path.points):
                 values = configuration_of(subject, point.configuration)
                 if k == 0:
-                    own = [f"efficiency{i}" for i in range(1, len(efficiencies[0]) + 1)]
-                    writer.writerow(["parameter", *_columns(values), "residual", "margin", *own])
+                    own = [f"efficiency{i}" for i in range(1, len(axes[0]) + 1)]
+                    writer.writerow(["parameter", *_columns(values), "residual", "margin", *own, *names])
                 numbers = [x for v in values.values() for x in (v if isinstance(v, list) else [v])]
-                writer.writerow([point.parameter, *numbers, point.residual, point.margin, *efficiencies[k]])
+                numbers += [point.residual, point.margin]
+                more = _direction_row(subject, axes[k]) if directions else []
+                writer.writerow([point.parameter, *numbers, *(axis.efficiency for axis in axes[k]), *more])
     except OSError as error:
         raise FileError(f"{file}: the table cannot be written ({error.strerror})") from error
+
+
+def _direction_columns(subject: Subject, count: int) -> list[str]:
+    """`motors1[o1]`, `task1[vx]` and so on."""
+    task = subject.mechanism.space.twist_components
+    return [
+        f"{side}{k}[{name}]"
+        for k in range(1, count + 1)
+        for side, names in (("motors", subject.mechanism.active), ("task", task))
+        for name in names
+    ]
+
+
+def _direction_row(subject: Subject, axes: Sequence[Axis]) -> list[float | None]:
+    """Empty cells where an efficiency is not finite."""
+    nothing: list[float | None] = [None] * (len(subject.mechanism.active) + subject.mechanism.space.dimension)
+    return [
+        number
+        for axis in axes
+        for number in (nothing if axis.motors is None or axis.task is None else [*axis.motors, *axis.task])
+    ]
 
 
 def _columns(values: dict[str, float | list[float]]) -> list[str]:

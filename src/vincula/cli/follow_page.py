@@ -23,7 +23,7 @@ ROWS: Final = 12
 
 def path_facts(subject: Subject, path: Path) -> dict[str, Any]:
     """The JSON object: metres and radians, but for configurations, which are in the units of the file."""
-    from vincula.cli.follow_efficiencies import efficiencies_along
+    from vincula.cli.follow_efficiencies import axes_along
 
     units = subject.report.units
     return {
@@ -43,9 +43,11 @@ def path_facts(subject: Subject, path: Path) -> dict[str, Any]:
                 "configuration": configuration_of(subject, point.configuration),
                 "residual": point.residual,
                 "margin": _finite(point.margin),
-                "efficiencies": found,
+                "efficiencies": [axis.efficiency for axis in axes],
+                "motor_directions": [axis.motors for axis in axes],
+                "task_directions": [axis.task for axis in axes],
             }
-            for point, found in zip(path.points, efficiencies_along(subject, path), strict=True)
+            for point, axes in zip(path.points, axes_along(subject, path), strict=True)
         ],
         "frames": [
             {name: {"position": at, "rotation": turn} for name, (at, turn) in frame.items()}
