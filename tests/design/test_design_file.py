@@ -61,12 +61,35 @@ def test_any_number_of_the_file_by_its_path(folder: Path) -> None:
         ("design: 1", "desing: 1", "expected the key `design: 1`"),
         ("linkage.yaml", "example:fivebar", "2:8: model: .*did you mean 'five-bar'"),
         ("condition:translation", "condtion:translation", "objectives.*no quantity is named"),
+        ("to: 150cm", "to: 1.5", "5:2.*got 1.5 beside a bound in cm: give it a unit too"),
+        ("to: 150cm", "to: 150deg", "5:2.*a length is no angle"),
+        ("5mm}", "5deg, start: 1m}", "4:6.*got 1m beside values in deg|got 5deg beside values in m"),
+        ("ties:", "active: []\nties:", "6:9: active: no motors"),
+        ("ties:", "active: o1,o9\nties:", "6:9: active: no motor, joint or axis is named 'o9'"),
+        ("ties:", "reference: couple\nties:", "6:12: reference: .*did you mean 'coupler'"),
     ],
 )
 def test_what_is_refused_has_a_place(folder: Path, old: str, new: str, words: str) -> None:
     (folder / "bad.yaml").write_text(GOOD.replace(old, new))
     with pytest.raises(vc.FileError, match=words):
         vc.read_design(folder / "bad.yaml")
+
+
+def test_an_angle_is_no_length(folder: Path) -> None:
+    text = GOOD.replace("left: {from: -1.5, to: -0.7, tolerance: 5mm}",
+                        'left: {from: -90deg, to: 0, sets: "joints[o1]/at[0]"}')  # fmt: skip
+    (folder / "bad.yaml").write_text(text.replace('  "joints[o1]/at[0]": $left\n', ""))
+    with pytest.raises(vc.FileError, match="is a length, and the bounds are in deg"):
+        vc.read_design(folder / "bad.yaml")
+
+
+def test_a_cost_that_is_infinite_everywhere_says_why(folder: Path) -> None:
+    """One motor for two motions: the coupler is loose in every design."""
+    (folder / "loose.yaml").write_text(GOOD.replace("ties:", "active: [o1]\nties:"))
+    problem = vc.read_design(folder / "loose.yaml").problem.by_reference()
+    words = "'no finite cost' killed 13.*moves in 1 way with all motors locked: give the mechanism more motors"
+    with pytest.raises(vc.DesignError, match=words):
+        problem.optimize(population=6, generations=1, polish=False)
 
 
 def test_the_command_writes_what_analyze_reads(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

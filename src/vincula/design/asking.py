@@ -5,17 +5,20 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from vincula.arrays import Matrix
-from vincula.design.judged import Judged, joined
+from vincula.design.judged import OWN, Judged, joined
 from vincula.errors import DesignError, listing
 
 if TYPE_CHECKING:
     from vincula.design.log import Log
     from vincula.design.problem import DesignProblem
+NO_COST: Final = OWN[-1]
+"""What kills a design whose objective is infinite or undefined."""
+ADVICE: Final = "Loosen the one that kills most, or widen the bounds of the variables"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +106,24 @@ class Asking:
         counts = found.counted(self.problem.names_of_constraints)
         ranked = sorted(counts.items(), key=lambda item: -item[1])
         told = listing(f"{name!r} killed {count}" for name, count in ranked)
-        raise DesignError(
-            f"no feasible design among {len(found)}: {told} (a design may break several). Loosen "
-            "the one that kills most, or widen the bounds of the variables",
-            counts=counts,
-        )
+        several = " (a design may break several)" if len(counts) > 1 else ""
+        endless = ranked[0][0] == NO_COST
+        advice = self._why_no_cost() if endless else ADVICE
+        raise DesignError(f"no feasible design among {len(found)}: {told}{several}. {advice}", counts=counts)
+
+    def _why_no_cost(self) -> str:
+        """What may be wrong where the objective is infinite or undefined everywhere."""
+        problem = self.problem
+        names = listing(repr(objective.name) for objective in problem.objectives)
+        said = f"{names}: infinite or undefined for all of them"
+        loose = problem.usual["indeterminacy"]
+        if loose:
+            ways = "1 way" if loose == 1 else f"{loose} ways"
+            return (
+                f"{said}, for the member moves in {ways} with all motors locked: give the mechanism more "
+                "motors (vincula place ranks them), or a weight of 0 to what may move"
+            )
+        return f"{said}. Look at one design with vincula analyze, or choose another objective"
 
     def _tell(self, judged: Judged) -> None:
         if self.progress is None:

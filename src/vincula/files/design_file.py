@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -87,7 +88,7 @@ class _Maker:
     def __init__(self, document: Document, entry: DesignEntry) -> None:
         self._document, self._entry = document, entry
         self._folder = Path(document.file).parent
-        self._builder = self._placed(("model",), self._model)
+        self._builder = self._model()
         self._units = self._placed(("model",), lambda: self._builder.units)
 
     def problem(self) -> DesignProblem:
@@ -123,17 +124,20 @@ class _Maker:
         model = (
             entry.model if entry.model.startswith(EXAMPLE) else str((self._folder / entry.model).resolve())
         )
-        made = NumbersBuilder(model, tuple(entry.set.items()))
-        made()
+        drawn = NumbersBuilder(model, tuple(entry.set.items()))
+        self._placed(("model",), drawn)
         changes: list[Any] = []
         if entry.active is not None:
-            names = tuple(name.strip() for name in entry.active.split(","))
+            words = entry.active.split(",") if isinstance(entry.active, str) else entry.active
+            names = tuple(word.strip() for word in words if word.strip())
+            if not names:
+                self._refuse(("active",), VinculaError("no motors: name at least one joint, or `all`"))
             changes.append(("with_active", (names,), ()))
+            self._placed(("active",), replace(drawn, changes=tuple(changes)))
         if entry.reference is not None:
             changes.append(("with_reference", (entry.reference,), ()))
-        made = replace(made, changes=tuple(changes))
-        made()
-        return made
+            self._placed(("reference",), replace(drawn, changes=tuple(changes)))
+        return replace(drawn, changes=tuple(changes))
 
     def _inside(self, amount: Amount) -> float:
         """A number in the units of the model file."""
@@ -143,7 +147,8 @@ class _Maker:
         return amount.value * UNITS["length" if linear else "angle"][amount.unit] / self._units.size(linear)
 
     def _variable(self, name: str, entry: VariableEntry) -> DesignVariable:
-        unit = entry.from_.unit
+        unit = entry.from_.unit or entry.to.unit
+        self._refuse_units(name, entry)
         return self._placed(
             ("variables", name),
             lambda: DesignVariable(
@@ -156,6 +161,26 @@ class _Maker:
                 self._inside(Amount(1.0, unit)),
             ),
         )
+
+    def _refuse_units(self, name: str, entry: VariableEntry) -> None:
+        """Refuse bounds that cannot be meant together: an angle and a length, or one without its unit."""
+        given = {"from": entry.from_, "to": entry.to, "start": entry.start, "tolerance": entry.tolerance}
+        amounts = {key: amount for key, amount in given.items() if amount is not None}
+        first = next((amount.unit for amount in amounts.values() if amount.unit), "")
+        for key, amount in amounts.items():
+            if amount.unit and (amount.unit in UNITS["length"]) != (first in UNITS["length"]):
+                told = f"got {amount.value:g}{amount.unit} beside values in {first}: a length is no angle"
+                self._refuse(("variables", name, key), VinculaError(told))
+        for key, amount in (("from", entry.from_), ("to", entry.to)):
+            if amount.value and not amount.unit and (entry.from_.unit or entry.to.unit):
+                own = f"{amount.value:g}{first}"
+                told = f"got {amount.value:g} beside a bound in {first}: give it a unit too ({own})"
+                self._refuse(("variables", name, key), VinculaError(told))
+        targets = [entry.sets] if isinstance(entry.sets, str) else entry.sets or [name]
+        for target in targets:
+            if first in UNITS["angle"] and re.search(r"/(at|origin|xyz)\[\d\]$", target):
+                told = f"{shown(target)} is a length, and the bounds are in {first}"
+                self._refuse(("variables", name), VinculaError(told))
 
     def _ties(self, variables: list[DesignVariable]) -> dict[str, Tie]:
         known = self._builder.parameters

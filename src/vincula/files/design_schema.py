@@ -10,6 +10,7 @@ from vincula.files.schema_values import Name, Strict, Text
 from vincula.files.sweep_schema import (
     Axis,
     LowDiscrepancyEntry,
+    Names,
     PathEntry,
     Quantity,
     RandomEntry,
@@ -106,7 +107,7 @@ class DesignEntry(Strict):
     design: Literal[1]
     model: Text
     set: dict[Name, Setting] = Field(default_factory=dict)
-    active: Text | None = None
+    active: Names | None = None
     reference: Text | None = None
     weights: Text | None = None
     variables: Annotated[dict[Name, VariableEntry], Field(min_length=1)]
