@@ -98,6 +98,11 @@ class Variables:
         """Number of rates."""
         return len(self.names)
 
+    @property
+    def balls(self) -> list[slice]:
+        """Columns of every ball: an angular velocity in the axes that turn with it."""
+        return [slice(column, column + 3) for _, column in self._balls]
+
     def gathered(self, known: Mapping[str, Vector]) -> Vector:
         """The state with the given values by joint or drive name."""
         state = np.empty(self._size)

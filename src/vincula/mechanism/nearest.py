@@ -64,21 +64,28 @@ class _Deflation:
 
     def jacobian(self, state: Vector, v: Vector, of_loops: Matrix) -> Matrix:
         """Derivatives with respect to the free rates and v."""
-        columns = np.flatnonzero(self.free)
-        turned = np.zeros((len(of_loops), len(columns)))
-        for k, column in enumerate(columns):
-            step = np.zeros(self.problem.columns)
-            step[column] = _STEP
-            ahead, behind = (
-                self.problem.equations(self.problem.variables.moved(state, sign * step)).jacobian
-                for sign in (1.0, -1.0)
-            )
-            turned[:, k] = (ahead - behind)[:, self.block] @ v / (2.0 * _STEP)
+        turned = self._turned(state, v, of_loops)[:, self.free]
         loops = of_loops[:, self.block]
         rest = np.vstack([self.direction, self.others.T])
         upper = np.hstack([of_loops[:, self.free], np.zeros_like(loops)])
         middle = np.hstack([turned, loops])
-        return np.vstack([upper, middle, np.hstack([np.zeros((len(rest), len(columns))), rest])])
+        return np.vstack([upper, middle, np.hstack([np.zeros((len(rest), turned.shape[1])), rest])])
+
+    def _turned(self, state: Vector, v: Vector, of_loops: Matrix) -> Matrix:
+        """Derivatives of J(q) v, by one central difference along v: second derivatives are symmetric.
+
+        But for rates of balls, which are no coordinates: turning about e and then along v is not turning
+        along v and then about e; they differ by turning about e x v.
+        """
+        along = np.zeros(self.problem.columns)
+        along[self.block] = v
+        step = _STEP / max(1.0, float(np.linalg.norm(v)))
+        moved = (self.problem.variables.moved(state, sign * step * along) for sign in (1.0, -1.0))
+        ahead, behind = (self.problem.equations(there).jacobian for there in moved)
+        turned: Matrix = (ahead - behind) / (2.0 * step)
+        for ball in self.problem.variables.balls:
+            turned[:, ball] += of_loops[:, ball] @ np.cross(np.eye(3), along[ball]).T
+        return turned
 
 
 def nearest_singular(

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from math import cos, hypot, pi, sin, sqrt
 
+import numpy as np
 import pytest
 
 import vincula as vc
-from vincula.mechanism.nearest import FARTHEST, nearest_singular
+from vincula.mechanism.catalog.registry import example
+from vincula.mechanism.holding import Holding, problem_for
+from vincula.mechanism.nearest import FARTHEST, _deflation, nearest_singular
 
 
 def parallelogram(angle: float) -> vc.Mechanism:
@@ -90,3 +93,28 @@ def test_a_certain_analysis_does_not_look_for_it() -> None:
     found = vc.analyze(parallelogram(0.5).linearize(), vc.Weights())
     assert found.nearest_singular is None
     assert found.to_dict()["rank"]["nearest_singular"] is None
+
+
+@pytest.mark.parametrize("name", ["stewart", "delta"])
+def test_derivatives_along_one_direction_are_those_of_every_column(name: str) -> None:
+    """With balls, whose rates are no coordinates; closed and beside a closed configuration."""
+    mechanism = example(name)
+    problem = problem_for(mechanism, Holding({}, {}, {}), tuple(mechanism.active), member=True)
+    start = problem.start(mechanism.home)
+    found = _deflation(problem, start, tuple(mechanism.active), False, False)
+    assert found is not None
+    assert problem.variables.balls
+    chance = np.random.default_rng(5)
+    for away in (0.0, 1e-2):
+        state = problem.variables.moved(start, away * chance.standard_normal(problem.columns) * found.free)
+        v = chance.standard_normal(int(found.block.sum()))
+        turned = found._turned(state, v, problem.equations(state).jacobian)
+        for column in np.flatnonzero(found.free):
+            step = np.zeros(problem.columns)
+            step[column] = 1e-5
+            ahead, behind = (
+                problem.equations(problem.variables.moved(state, sign * step)).jacobian
+                for sign in (1.0, -1.0)
+            )
+            expected = (ahead - behind)[:, found.block] @ v / 2e-5
+            assert turned[:, column] == pytest.approx(expected, abs=1e-8)
