@@ -12,7 +12,9 @@ from vincula.traced import (
     HYPOTENUSE,
     IS_LESS,
     LARGER,
+    NEAREST,
     POWER_OF_TWO,
+    SMALLER,
     Number,
     Traced,
     holds_traced,
@@ -56,9 +58,24 @@ def hypot(*components: Number) -> Number:
     return found
 
 
+def is_finite(x: Number) -> bool:
+    """Whether a float is finite; of traced numbers that is seen where they are used."""
+    return isinstance(x, Traced) or math.isfinite(x)
+
+
+def nearest(x: Number) -> Number:
+    """The nearest whole number, as a float; of two equally near ones the even one."""
+    return x.trace.apply(NEAREST, x) if isinstance(x, Traced) else float(round(x))
+
+
 def larger(one: Number, two: Number) -> Number:
     """The larger of two numbers, whichever it is for other parameters."""
     return trace_of(one, two).apply(LARGER, one, two) if holds_traced((one, two)) else max(one, two)
+
+
+def smaller(one: Number, two: Number) -> Number:
+    """The smaller of two numbers, whichever it is for other parameters."""
+    return trace_of(one, two).apply(SMALLER, one, two) if holds_traced((one, two)) else min(one, two)
 
 
 def power_of_two(x: Number) -> Number:

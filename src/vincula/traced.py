@@ -17,7 +17,7 @@ import numpy as np
 
 INPUT, CONSTANT, ADD, SUBTRACT, MULTIPLY, DIVIDE, NEGATE, ABSOLUTE, ROOT, SINE, COSINE, TANGENT = range(12)
 ARCTANGENT, ARCSINE, ARCCOSINE, EXPONENTIAL, LOGARITHM, POWER, HYPOTENUSE, ANGLE = range(12, 20)
-LARGER, SMALLER, POWER_OF_TWO, IS_LESS, CHOICE, BELOW, NOT_ABOVE, EQUAL = range(20, 28)
+LARGER, SMALLER, POWER_OF_TWO, NEAREST, IS_LESS, CHOICE, BELOW, NOT_ABOVE, EQUAL = range(20, 29)
 """Operations; the last three are guards."""
 
 
@@ -32,7 +32,7 @@ VALUES: Final[dict[int, Callable[..., float]]] = {
     COSINE: math.cos, TANGENT: math.tan, ARCTANGENT: math.atan, ARCSINE: math.asin, ARCCOSINE: math.acos,
     EXPONENTIAL: math.exp, LOGARITHM: math.log, POWER: math.pow, HYPOTENUSE: math.hypot, ANGLE: math.atan2,
     LARGER: max, SMALLER: min, POWER_OF_TWO: nearest_power_of_two, IS_LESS: lambda a, b: float(a < b),
-    CHOICE: lambda c, a, b: a if c else b,
+    NEAREST: lambda x: float(round(x)), CHOICE: lambda c, a, b: a if c else b,
 }  # fmt: skip
 """What every operation does to floats."""
 _GUARDS: Final[dict[int, Callable[[float, float], bool]]] = {

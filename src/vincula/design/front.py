@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from vincula.arrays import Matrix
 from vincula.design.asking import Asking, Progress
 from vincula.design.judged import Judged
+from vincula.design.rechecked import rechecked
 from vincula.errors import MissingExtraError, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def front(
     """The best compromises between the objectives of a problem.
 
     NSGA-II or NSGA-III of pymoo; every generation is one batch.  Kept are all designs ever evaluated that no
-    other one beats in every objective; each is computed again by the reference path.
+    other one beats in every objective; each is computed again by the reference path (see `rechecked`).
 
     Args:
         problem: A problem with at least two objectives.
@@ -127,7 +128,7 @@ def front(
     members = able.part(pareto_front(-able.signed))
     members = members.part(np.argsort(members.objectives[:, 0], kind="stable"))
     members = members.part(different(members.objectives))
-    again = problem.by_reference().judge(members.designs).objectives
+    again = rechecked(problem, members)
     counts = found.counted(problem.names_of_constraints)
     return Front(problem, members, again, found, counts, asking.evaluated, seed, method)
 

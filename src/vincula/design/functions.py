@@ -26,6 +26,7 @@ from vincula.traced import (
     IS_LESS,
     LARGER,
     MULTIPLY,
+    NEAREST,
     NEGATE,
     NOT_ABOVE,
     ROOT,
@@ -84,7 +85,7 @@ _EXACT: Final[dict[int, Callable[..., Any]]] = {
     ADD: np.add, SUBTRACT: np.subtract, MULTIPLY: np.multiply, DIVIDE: np.divide, NEGATE: np.negative,
     ABSOLUTE: np.abs, ROOT: np.sqrt, LARGER: lambda a, b: np.where(b > a, b, a),
     SMALLER: lambda a, b: np.where(b < a, b, a), IS_LESS: lambda a, b: np.where(a < b, 1.0, 0.0),
-    CHOICE: lambda c, a, b: np.where(c != 0.0, a, b),
+    CHOICE: lambda c, a, b: np.where(c != 0.0, a, b), NEAREST: np.rint,
     BELOW: np.less, NOT_ABOVE: np.less_equal, EQUAL: np.equal,
 }  # fmt: skip
 """Operations that numpy does to the last bit as Python does."""

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from vincula.design.log import Log
     from vincula.design.problem import DesignProblem
 
-BATCH: Final = 512
-"""Designs of one batch: what an interruption can cost."""
+BATCH: Final = 8192
+"""Configurations of one batch, of all its designs together: a fraction of a second in lanes."""
+LEAST: Final = 64
+"""Least designs of one batch, which is what an interruption can cost."""
 MOST: Final = 4_000_000
 """Most designs of a landscape."""
 
@@ -110,8 +112,9 @@ def scan(
         table[:, place] = values.ravel()
     asking = Asking(problem, f"scan {list(names)} {sizes} {base.tolist()}", log, progress, len(table))
     asking.stage = "scanning"
-    for first in range(0, len(table), BATCH):
-        asking(table[first : first + BATCH])
+    batch = max(LEAST, BATCH // problem.places)
+    for first in range(0, len(table), batch):
+        asking(table[first : first + batch])
     judged = asking.everything
     values = np.where(judged.feasible[:, None], judged.objectives, np.nan)
     shaped = values.reshape((*sizes, len(problem.objectives)))

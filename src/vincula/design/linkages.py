@@ -30,18 +30,27 @@ def five_bar(base: float = 0.2, near: float = 0.25, far: float = 0.35) -> Mechan
     left, right = np.array([-base / 2.0, 0.0]), np.array([base / 2.0, 0.0])
     elbow = _elbow(left, tip, near, far, 1.0)
     other = np.array([-elbow[0], elbow[1]])
-    return Mechanism.planar(
-        joints=[
-            Revolute("m1", "ground", "near1", at=left),
-            Revolute("e1", "near1", "far1", at=elbow),
-            Revolute("tip", "far1", "far2", at=tip),
-            Revolute("e2", "far2", "near2", at=other),
-            Revolute("m2", "near2", "ground", at=right),
-        ],
-        reference=Reference("far1", origin=tip),
-        active=["m1", "m2"],
-        name="five-bar",
-    )
+    return _of_points(left, elbow, tip, other, right)
+
+
+def uneven_five_bar(
+    near_left: float = 0.25, near_right: float = 0.25, far_left: float = 0.35, far_right: float = 0.35
+) -> Mechanism:
+    """A planar five-bar on two motors 0.2 m apart, elbows outside, its four links of any lengths.
+
+    Args:
+        near_left: Length of the link at the left motor.
+        near_right: Length of the link at the right motor.
+        far_left: Length of the link from the left elbow to the tip.
+        far_right: Length of the link from the right elbow to the tip.
+
+    Raises:
+        ModelError: The links do not reach the tip.
+    """
+    left, right, tip = np.array([-0.1, 0.0]), np.array([0.1, 0.0]), np.array([0.0, TIP])
+    one = _elbow(left, tip, near_left, far_left, 1.0)
+    two = _elbow(right, tip, near_right, far_right, -1.0)
+    return _of_points(left, one, tip, two, right)
 
 
 def finger(crank: float = 0.02, coupler: float = 0.06, lever: float = 0.03) -> Mechanism:
@@ -98,6 +107,22 @@ def ankle(lever: float = 0.05, width: float = 0.04, height: float = 0.2) -> Mech
         reference=Reference("foot", origin=(0, 0, 0)),
         active=["pl", "pr"],
         name="ankle",
+    )
+
+
+def _of_points(left: Vector, one: Vector, tip: Vector, two: Vector, right: Vector) -> Mechanism:
+    """The five-bar with these joints."""
+    return Mechanism.planar(
+        joints=[
+            Revolute("m1", "ground", "near1", at=left),
+            Revolute("e1", "near1", "far1", at=one),
+            Revolute("tip", "far1", "far2", at=tip),
+            Revolute("e2", "far2", "near2", at=two),
+            Revolute("m2", "near2", "ground", at=right),
+        ],
+        reference=Reference("far1", origin=tip),
+        active=["m1", "m2"],
+        name="five-bar",
     )
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from vincula.arrays import Matrix, Vector
 from vincula.design.constraints import Constraint, Relation
@@ -242,6 +242,30 @@ class DesignProblem:
             path=self.path,
         )
         return Lanes(compiled, found, parameters, usual["freedom"], usual)
+
+    def looked_at(
+        self,
+        measure: Measure,
+        designs: Matrix,
+        places: NDArray[np.intp] | None = None,
+        seen: Lanes | None = None,
+    ) -> Lanes:
+        """What a measure is computed from: at all configurations, or by the reference path at some.
+
+        Args:
+            measure: The measure.
+            designs: One row a design.
+            places: For every design the configurations to look at again; None for all, as in a search.
+            seen: What was found at all of them.
+        """
+        quantities = dict.fromkeys((*measure.quantities, *COUNTED, "configuration"))
+        if places is None or seen is None:
+            return self._found(measure.weights, designs, tuple(quantities))
+        compiled = self.compiled_for(measure.weights)
+        parameters = {name: values[:, None] for name, values in self.space.parameters(designs).items()}
+        at = np.take_along_axis(seen["configuration"], places[:, :, None], axis=1)
+        found = compiled.evaluate(at, quantities, parameters=parameters, path="reference")
+        return Lanes(compiled, found, parameters, self.usual["freedom"], self.usual)
 
     def by_reference(self) -> DesignProblem:
         """The same problem, every batch computed one by one by the reference path."""

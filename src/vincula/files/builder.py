@@ -15,6 +15,7 @@ from vincula.files.parameters import parameter_values, setting
 from vincula.files.source import open_source
 from vincula.files.tree import Leaf
 from vincula.files.units import Units
+from vincula.mechanism.drawn_mechanism import Outline
 from vincula.mechanism.mechanism import Mechanism
 
 Change = tuple[str, tuple[Any, ...], tuple[tuple[str, Any], ...]]
@@ -56,6 +57,26 @@ class FileBuilder:
         for method, arguments, named in self.changes:
             made = getattr(made, method)(*arguments, **dict(named))
         return made
+
+    def outline(self, **values: Any) -> Outline:
+        """What is drawn with traced parameters: the geometry of many mechanisms at once.
+
+        Raises:
+            TypeError: Something that cannot be traced depends on them.
+            ModelError: Values that are no geometry.
+        """
+        from vincula.files.outlines import changed, outline_of_document, outline_of_example
+
+        settings: dict[str, Any] = {**dict(self.settings), **values}
+        if self.path.startswith(EXAMPLE):
+            return changed(outline_of_example(self.path, settings), self.changes)
+        source = open_source(self.path, self.limits)
+        if self.beside or source.text.lstrip().startswith("<"):
+            raise TypeError("XML files are not traced")
+        from vincula.files.treefile import read_tree
+
+        document = read_tree(source, self.limits)
+        return changed(outline_of_document(document, self.path, settings, self.limits), self.changes)
 
     @cached_property
     def parameters(self) -> Mapping[str, float]:

@@ -20,9 +20,10 @@ from vincula.files.load import EXAMPLE, load
 from vincula.files.native import read_native
 from vincula.files.parameters import declared, parameter_values
 from vincula.files.source import open_source
-from vincula.files.tree import Document, Items, Leaf, Node, Table, TypedNumber
+from vincula.files.tree import Document, Items, Leaf, Node, Table
 from vincula.files.treefile import read_tree
 from vincula.files.units import Units
+from vincula.mechanism.drawn_mechanism import Outline
 from vincula.mechanism.mechanism import Mechanism
 
 _NO_DESIGN: Final = ("parameters", "precision", "vincula")
@@ -45,9 +46,8 @@ class Expression:
         Raises:
             ExpressionError: It has none at these values, or is not in the grammar.
         """
-        return evaluate(
-            self.text, {name: Measured(value, computed=True) for name, value in values.items()}
-        ).value
+        known = {name: Measured(value, computed=True) for name, value in values.items()}
+        return evaluate(self.text, known).value
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,32 @@ class NumbersBuilder:
         for method, arguments, named in self.changes:
             made = getattr(made, method)(*arguments, **dict(named))
         return made
+
+    def outline(self, **values: Any) -> Outline:
+        """What is drawn with traced numbers: the geometry of many mechanisms at once.
+
+        Raises:
+            TypeError: Something that cannot be traced depends on them.
+            ModelError: Values that are no geometry.
+        """
+        from vincula.files.outlines import changed, outline_of_document, outline_of_example
+
+        numbers = {name: value for name, value in values.items() if name in self._paths}
+        settings = {**dict(self.settings), **{n: v for n, v in values.items() if n not in numbers}}
+        if self.path.startswith(EXAMPLE):
+            return changed(outline_of_example(self.path, settings), self.changes)
+        if self._document is None:
+            raise TypeError("XML files are not traced")
+        return changed(outline_of_document(self._with_numbers(numbers), self.path, settings), self.changes)
+
+    def _with_numbers(self, numbers: Mapping[str, Any]) -> Document:
+        """The tree of the file, read anew, with other numbers at some paths."""
+        document = read_tree(open_source(self.path, DEFAULT_LIMITS), DEFAULT_LIMITS)
+        where = {document.place(place).path: place for place, _ in _leaves(document.root, ())}
+        root: Node = document.root
+        for name, value in numbers.items():
+            root = _with(root, where[name], value)
+        return replace(document, root=root)
 
     @cached_property
     def parameters(self) -> Mapping[str, float]:
@@ -127,11 +153,7 @@ class NumbersBuilder:
         return found
 
     def _changed(self, numbers: Mapping[str, float], settings: Mapping[str, Any]) -> Mechanism:
-        document = read_tree(open_source(self.path, DEFAULT_LIMITS), DEFAULT_LIMITS)
-        where = {document.place(place).path: place for place, _ in _leaves(document.root, ())}
-        root: Node = document.root
-        for name, value in numbers.items():
-            root = _with(root, where[name], value)
+        document = self._with_numbers({name: float(value) for name, value in numbers.items()})
         folder = Path(self.path).parent
 
         def base(file: str) -> Any:
@@ -142,7 +164,7 @@ class NumbersBuilder:
             own = {n: v for n, v in settings.items() if n not in declared(document)}
             return Loaded(*load_with_report(inner, own), tuple(own))
 
-        return read_native(replace(document, root=root), Path(self.path).stem, base, settings).mechanism
+        return read_native(document, Path(self.path).stem, base, settings).mechanism
 
 
 def near(name: str, known: Mapping[str, float]) -> list[str]:
@@ -177,10 +199,11 @@ def _number(leaf: Leaf, parameters: Mapping[str, Measured]) -> float | None:
     return None
 
 
-def _with(node: Node, location: Sequence[str | int], value: float) -> Node:
+def _with(node: Node, location: Sequence[str | int], value: Any) -> Node:
     """A tree with another number at one place."""
     if not location:
-        return replace(node, value=TypedNumber(repr(float(value)))) if isinstance(node, Leaf) else node
+        # A number of a design is as exact as it is: it was not typed.
+        return replace(node, value=value) if isinstance(node, Leaf) else node
     step, rest = location[0], location[1:]
     if isinstance(node, Table):
         return replace(node, entries={**node.entries, str(step): _with(node.entries[str(step)], rest, value)})

@@ -19,10 +19,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Final, NoReturn
 
+from vincula.elementary import cos, is_finite, sin, sqrt, tan
 from vincula.errors import ModelError, listing
 from vincula.files.digits import half_unit
-from vincula.files.meant import angle_doubt
 from vincula.files.problems import shown, suggestion
+from vincula.files.traced_digits import doubt_of_angle
 from vincula.files.tree import number
 from vincula.numerics.surds import PI, QUARTER, NotExactError, WithPi, exactly
 
@@ -100,7 +101,7 @@ def evaluate(text: str, parameters: Mapping[str, Measured]) -> Measured:
         raise ExpressionError(text, f"longer than {_LONGEST} characters", _LONGEST)
     reader = _Reader(text, parameters)
     result = reader.whole()
-    if not (math.isfinite(result.value) and math.isfinite(result.half_unit)):
+    if not (is_finite(result.value) and is_finite(result.half_unit)):
         raise ExpressionError(text, "its value is too large", 0)
     return result
 
@@ -209,20 +210,20 @@ class _Reader:
         if word == "sqrt":
             if x < 0.0:
                 raise ExpressionError(self._text, f"square root of {x:g}", start)
-            root = math.sqrt(x)
+            root = sqrt(x)
             exact = _exactly(lambda a: WithPi(a.number.root()), argument)
-            return _computed(root, off / (2.0 * root) if root > 0.0 else math.sqrt(off), exact)
-        if not math.isfinite(x):
+            return _computed(root, off / (2.0 * root) if root > 0.0 else sqrt(off), exact)
+        if not is_finite(x):
             raise ExpressionError(self._text, "its value is too large", start)
-        off = max(off, angle_doubt(repr(x)))
+        off = max(off, doubt_of_angle(x))
         if word == "sin":
             exact = _exactly(lambda a: WithPi((QUARTER + -a).cosine), argument)
-            return _computed(math.sin(x), abs(math.cos(x)) * off, exact)
+            return _computed(sin(x), abs(cos(x)) * off, exact)
         if word == "cos":
             exact = _exactly(lambda a: WithPi(a.cosine), argument)
-            return _computed(math.cos(x), abs(math.sin(x)) * off, exact)
+            return _computed(cos(x), abs(sin(x)) * off, exact)
         exact = _exactly(lambda a: WithPi((QUARTER + -a).cosine) / WithPi(a.cosine), argument)
-        return _computed(math.tan(x), (1.0 + math.tan(x) ** 2) * off, exact)
+        return _computed(tan(x), (1.0 + tan(x) ** 2) * off, exact)
 
     def _parenthesis(self) -> Measured:
         self._depth += 1

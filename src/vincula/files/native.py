@@ -12,18 +12,21 @@ from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.native_drawing import draw
 from vincula.files.native_names import joint_values
 from vincula.files.native_notes import note_oddities, record_entries
+from vincula.files.native_parts import position
 from vincula.files.native_rest import STEPS, tell_rest
 from vincula.files.parameters import Settings, declared, parameter_values
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
 from vincula.files.schema import NativeFile
 from vincula.files.schema_problems import validated
-from vincula.files.schema_values import Context
+from vincula.files.schema_values import Context, mentions_traced
 from vincula.files.sketch import Sketch
 from vincula.files.snapping import Snapping
 from vincula.files.snapping_native import snapped_tree
 from vincula.files.tree import Document, Leaf, Location, Table
 from vincula.files.units import Scale, Units
+from vincula.mechanism.drawing import In, Reference
+from vincula.mechanism.drawn_mechanism import Outline
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.parts import Precision
 from vincula.spatial.space import Space, space_named
@@ -97,6 +100,53 @@ def read_native(
         report.extend(base.report, new_motors=entry.motors is not None)
     every = (*declared(document), *(base.parameters if base else ()))
     return Loaded(mechanism, report, tuple(dict.fromkeys(every)))
+
+
+def outline_native(
+    document: Document, load_base: LoadBase, settings: Settings, limits: Limits = DEFAULT_LIMITS
+) -> Outline:
+    """What a native file draws with traced numbers.
+
+    Args:
+        document: The parsed file; its numbers may be traced.
+        load_base: Loads the base, if there is one, with the numbers that it has.
+        settings: New values of parameters, traced or not.
+        limits: Limits of the file.
+
+    Raises:
+        TypeError: More than what is drawn depends on traced numbers.
+        FileError: The file is refused with these numbers.
+    """
+    _refuse_other_files(document)
+    base = _base(document, load_base)
+    units = _units(document)
+    space = _space(document, base)
+    context = Context(
+        parameter_values(document, settings, units), space.translations if space else None, limits
+    )
+    entry = validated(document, NativeFile, context)
+    if entry is None or space is None:
+        document.problems.refuse()
+    rest = (entry.couplings, entry.motors, entry.weights, entry.precision, entry.configuration)
+    if any(mentions_traced(part) for part in rest) or entry.configuration:
+        raise TypeError("more than what is drawn depends on the parameters")
+    scale = Scale(units)
+    below = base.mechanism if base else None
+    sketch = draw(document, entry, space, scale, below, limits)
+    document.problems.refuse_if_any()
+    precision = scale.precision(below.precision if below else Precision(), entry.precision)
+    return Outline(sketch.drawing, _drawn_reference(entry, units, below), None, precision)
+
+
+def _drawn_reference(entry: NativeFile, units: Units, base: Mechanism | None) -> Reference | None:
+    """The member as it is drawn; that of the base where the file names none."""
+    own = entry.reference
+    if own is not None:
+        return Reference(
+            own.body, None if own.origin is None else position(own.origin, Scale(units)), own.axes
+        )
+    known = base.reference if base else None
+    return None if known is None else Reference(known.body, In(known.body, list(known.origin)), known.axes)
 
 
 def _refuse_other_files(document: Document) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Final
+from typing import Any, Final
 
 from vincula.errors import ModelError
 from vincula.files.digits import half_unit, is_number
@@ -14,6 +14,7 @@ from vincula.files.schema_values import number_hint
 from vincula.files.tree import Document, Leaf, Table
 from vincula.files.units import Units
 from vincula.spatial.units import quantity
+from vincula.traced import holds_traced
 
 _USABLE: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 
@@ -76,6 +77,9 @@ def setting(given: float | str, units: Units, what: str, known: Mapping[str, Mea
     Raises:
         ModelError: None of these.
     """
+    if holds_traced(given):
+        number: Any = given
+        return Measured(number, computed=True)
     if not isinstance(given, str):
         return Measured(quantity(given, "number", what))
     text = given.strip()

@@ -28,6 +28,7 @@ from vincula.files.expressions import ExpressionError, Measured, evaluate, is_ex
 from vincula.files.limits import DEFAULT_LIMITS, LARGEST_NUMBER, Limits
 from vincula.files.names import name_problem
 from vincula.files.problems import shown
+from vincula.traced import holds_traced
 
 _LONGEST_TEXT: Final = 2_000
 
@@ -70,6 +71,8 @@ def read_number(value: Any, info: ValidationInfo) -> Measured:
         result = Measured(
             float(value), getattr(value, "half_unit", 0.0), getattr(value, "angular_half_unit", 0.0)
         )
+    elif holds_traced(value):
+        result = Measured(value, computed=True)
     else:
         raise refusal(shown(value), number_hint(value))
     if not abs(result.value) <= LARGEST_NUMBER:
@@ -169,3 +172,14 @@ Placed = Annotated[
     Discriminator(_form),
 ]
 """A position or direction: coordinates in ground axes, or `{in: BODY or frame, xyz: [...]}`."""
+
+
+def mentions_traced(entry: object) -> bool:
+    """Whether there are traced numbers anywhere in an entry."""
+    if isinstance(entry, BaseModel):
+        return any(mentions_traced(part) for part in vars(entry).values())
+    if isinstance(entry, Mapping):
+        return any(mentions_traced(part) for part in entry.values())
+    if isinstance(entry, (list, tuple)):
+        return any(mentions_traced(part) for part in entry)
+    return isinstance(entry, Measured) and holds_traced((entry.value, entry.half_unit))

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from vincula.elementary import hypot
 from vincula.files.expressions import Measured, exact_number
-from vincula.files.meant import direction_doubt
+from vincula.files.traced_digits import doubt_of_direction
 from vincula.mechanism.parts import Precision
 from vincula.numerics.surds import ExactFloat, NotExactError, Surd
 from vincula.spatial.units import UNITS
+from vincula.traced import holds_traced
 
 if TYPE_CHECKING:
     from vincula.files.schema import PrecisionEntry
@@ -82,11 +84,11 @@ class Scale:
     def direction(self, numbers: Sequence[Measured]) -> tuple[float, ...]:
         """A direction as it is; its digits count as an angle."""
         values = tuple(_known(number, number.value, Surd.of(1)) for number in numbers)
-        size = math.hypot(*values)
+        size = hypot(*values)
         if size > 0.0:
             off = max(max(number.half_unit, number.angular_half_unit) for number in numbers)
             # Typed digits are those that Python prints: the shortest that give the same double.
-            self._angle = max(self._angle, off / size, direction_doubt([repr(value) for value in values]))
+            self._angle = max(self._angle, off / size, doubt_of_direction(values))
         return values
 
     def precision(self, base: Precision, declared: PrecisionEntry | None = None) -> Precision:
@@ -110,7 +112,7 @@ class Scale:
 
 def _known(number: Measured, value: float, unit: Surd) -> float:
     """A converted value that knows which number it stands for, where its digits do not say it."""
-    if not number.computed and value == number.value:
+    if holds_traced(value) or (not number.computed and value == number.value):
         return value
     try:
         return ExactFloat(value, exact_number(number).number * unit)

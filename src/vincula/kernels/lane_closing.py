@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, VinculaError
@@ -31,8 +32,14 @@ OPEN: Final = 1e-6
 """A gap that stays above this, times the characteristic length, does not close."""
 
 
-def lane_closing(mechanism: Mechanism, given: Given) -> LaneClosing | str:
-    """The closing of a mechanism in lanes; or why only the reference path closes it."""
+def lane_closing(mechanism: Mechanism, given: Given, *, general: bool = False) -> LaneClosing | str:
+    """The closing of a mechanism in lanes; or why only the reference path closes it.
+
+    Args:
+        mechanism: The mechanism.
+        given: What is given.
+        general: Whether dimensions are going to differ from design to design.
+    """
     if not numba_is_installed():
         return "numba is not installed"
     if given == "configuration":
@@ -40,7 +47,7 @@ def lane_closing(mechanism: Mechanism, given: Given) -> LaneClosing | str:
     from vincula.kernels.lanes.closing import LaneClosing
 
     try:
-        return LaneClosing.prepare(mechanism, given)
+        return LaneClosing.prepare(mechanism, given, general=general)
     except VinculaError as error:
         return str(error)
 
@@ -84,8 +91,7 @@ def evaluate_closed(
     if batch.values is None:
         return
     closed = _closed(closing, start, batch, batch.values, threads)
-    whole = replace(batch, given="configuration", values=closed.values, starts=None, first=None)
-    evaluate_in_lanes(writers, variants, plan, whole, arrays, reasons, threads)
+    _evaluate_reached(closed, writers, variants, plan, batch, arrays, reasons, threads)
     if "closure.iterations" in arrays:
         arrays["closure.iterations"][...] = closed.steps
     lost = np.flatnonzero(~closed.closed)
@@ -96,12 +102,51 @@ def evaluate_closed(
     arrays["status"][lost] = NO_CLOSURE
     gaps = closed.residual[lost]
     # Not certain either where the gap is not a number.
-    certain = (gaps > OPEN * closing.mechanism.length) & ~closed.jumped[lost]
+    certain = (gaps > OPEN * closing.length) & ~closed.jumped[lost]
     for lane in lost[certain][:MOST_REASONS].tolist():
         left = f"{closed.residual[lane]:.3g} m of its gaps stay open, angles times the characteristic length"
         reasons.add(lane, Outcome(NO_CLOSURE, f"it does not close from the configuration before it: {left}"))
     again = replace(batch, starts=closed.values)
     evaluate_one_by_one(variants, plan, again, arrays, lost[~certain].tolist(), reasons)
+
+
+def _evaluate_reached(
+    closed: ClosedLanes,
+    writers: LaneWriters,
+    variants: Variants,
+    plan: Plan,
+    batch: Batch,
+    arrays: Arrays,
+    reasons: Reasons,
+    threads: int,
+) -> None:
+    """Evaluate the lanes that closed.
+
+    The others hold the last configuration before them, which is singular more often than not: each would
+    go through the reference path, for nothing.
+    """
+    whole = replace(batch, given="configuration", values=closed.values, starts=None, first=None)
+    if closed.closed.all():
+        evaluate_in_lanes(writers, variants, plan, whole, arrays, reasons, threads)
+        return
+    lanes = np.flatnonzero(closed.closed)
+    settings = {name: values[lanes] for name, values in batch.parameters.items()}
+    part = replace(whole, shape=(len(lanes),), values=closed.values[lanes], parameters=settings)
+    found = {name: np.empty((len(lanes), *array.shape[1:]), array.dtype) for name, array in arrays.items()}
+    evaluate_in_lanes(writers, variants, plan, part, found, _Placed(reasons, lanes), threads)
+    for name, array in arrays.items():
+        array[lanes] = found[name]
+
+
+class _Placed(Reasons):
+    """Reasons of some lanes, kept with those of the whole batch."""
+
+    def __init__(self, whole: Reasons, lanes: NDArray[np.intp]) -> None:
+        super().__init__()
+        self._whole, self._lanes = whole, lanes
+
+    def add(self, lane: int, outcome: Outcome) -> None:
+        self._whole.add(int(self._lanes[lane]), outcome)
 
 
 def _closed(

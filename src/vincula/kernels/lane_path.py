@@ -135,7 +135,7 @@ class LaneWriters:
             raw = self.path.program.run(
                 values[part], None if constants is None else constants[part], want=self.want, threads=1
             )
-            self._write(raw, arrays, part)
+            self._write(raw, arrays, part, self._lengths(constants, part))
             opened[part] = ~raw.certain & (raw.residual > 2.0 * CLOSED) & (raw.residual < widest)
             unknown[part] = ~(raw.certain | opened[part])
 
@@ -148,12 +148,16 @@ class LaneWriters:
                 block(first)
         return np.flatnonzero(unknown), np.flatnonzero(opened)
 
-    def _write(self, raw: RawLanes, arrays: Arrays, part: slice) -> None:
+    def _lengths(self, constants: Matrix | None, part: slice) -> Any:
+        """Characteristic lengths of lanes: the first constant is one over it."""
+        return 1.0 / (self.path.program.constants[0] if constants is None else constants[part, 0])
+
+    def _write(self, raw: RawLanes, arrays: Arrays, part: slice, lengths: Any) -> None:
         with np.errstate(all="ignore"):  # lanes that are not certain hold anything
             for name, writer in self.writers:
                 writer(raw, arrays[name][part])
         if "closure.residual" in arrays:
-            arrays["closure.residual"][part] = raw.residual * self.path.mechanism.length
+            arrays["closure.residual"][part] = raw.residual * lengths
 
 
 def lane_path(mechanism: Mechanism, weights: Weights | None, *, general: bool) -> LanePath | str:

@@ -12,6 +12,7 @@ from vincula.kernels.evaluation import Evaluation
 from vincula.kernels.inputs import Batch, Given
 from vincula.kernels.lane_batch import evaluate_in_lanes
 from vincula.kernels.lane_closing import SingleClosing, closed_start, evaluate_closed, lane_closing
+from vincula.kernels.lane_designs import evaluate_rows, rows_of
 from vincula.kernels.lane_path import (
     LanePath,
     LaneWriters,
@@ -124,6 +125,23 @@ class Runner:
                     self._closings[given] = lane_closing(self.mechanism, given)
         return self._closings[given]
 
+    def _designs_in_lanes(
+        self, writers: LaneWriters, plan: Plan, batch: Batch, arrays: Arrays, reasons: Reasons, threads: int
+    ) -> Arrays | str:
+        """Designs that are closed at every place, in lanes; or why that cannot be."""
+        key = f"{batch.given} of designs"
+        with self._preparing:
+            if key not in self._closings:
+                self._closings[key] = lane_closing(self.mechanism, batch.given, general=True)
+        closing = self._closings[key]
+        if isinstance(closing, str):
+            return closing
+        rows = rows_of(closing, writers, self.variants, batch, threads)
+        if isinstance(rows, str):
+            return rows
+        evaluate_rows(rows, closing, writers, self.variants, plan, batch, arrays, reasons, threads)
+        return arrays
+
     def _in_lanes(self, plan: Plan, batch: Batch, reasons: Reasons, threads: int) -> Arrays | str:
         """The batch in lanes, or why that cannot be."""
         writers = self.writers(plan, bool(batch.parameters))
@@ -134,7 +152,7 @@ class Runner:
             evaluate_in_lanes(writers, self.variants, plan, batch, arrays, reasons, threads)
             return arrays
         if batch.parameters:
-            return "lanes close one geometry only"
+            return self._designs_in_lanes(writers, plan, batch, arrays, reasons, threads)
         closing = self.closing(batch.given)
         if isinstance(closing, str):
             return closing

@@ -64,7 +64,7 @@ class Twin:
         self.joint = {joint.name: joint for joint in self.all_joints}
         self.tree = tuple((self.joint[joint.name], forward) for joint, forward in nominal.tree)
         self.reference = self._reference(outline)
-        self.weights = outline.weights
+        self.weights = outline.weights or nominal.weights
         self.precision = outline.precision or nominal.precision
 
     def __getattr__(self, name: str) -> Any:

@@ -22,7 +22,7 @@ class Outline:
     Attributes:
         drawing: Joints, contacts and bodies.
         reference: The reference member as it is drawn; None where none is named.
-        weights: Weights declared with the mechanism.
+        weights: Weights declared with the mechanism; None for those of the nominal one.
         precision: Typed digits and tolerances, where they are traced; None for those of the mechanism.
     """
 

@@ -80,8 +80,13 @@ class LaneClosing:
     at_home: Vector
 
     @staticmethod
-    def prepare(mechanism: Mechanism, given: Given) -> LaneClosing:
+    def prepare(mechanism: Mechanism, given: Given, *, general: bool = False) -> LaneClosing:
         """The closing of a mechanism with a reference member.
+
+        Args:
+            mechanism: The mechanism.
+            given: What is given.
+            general: Whether variants of other dimensions are to have the same tables.
 
         Raises:
             Unsupported: Something that the reference path alone closes.
@@ -90,11 +95,16 @@ class LaneClosing:
         return LaneClosing(
             mechanism,
             given,
-            closing_arrays(mechanism, given),
+            closing_arrays(mechanism, given, general=general),
             _determined(mechanism, given, home),
             _gap(mechanism, home) <= OPEN_START * mechanism.length,
             given_at(mechanism, given, home),
         )
+
+    @property
+    def length(self) -> float:
+        """Characteristic length of the dimensions that are closed [m]: the first constant is one over it."""
+        return float(1.0 / self.arrays.constants[0])
 
     def given_at(self, q: Configuration) -> Vector:
         """What is given at a configuration: motor positions, or the pose of the reference member."""
@@ -157,7 +167,7 @@ class _Run:
 
     def result(self) -> ClosedLanes:
         """What was found."""
-        residual = np.sqrt(self.gaps) * self.closing.mechanism.length
+        residual = np.sqrt(self.gaps) * self.closing.length
         return ClosedLanes(self.values, self.closed == 1, self.closed == 2, self.steps, residual)
 
     def follow(self, start: Configuration, stretch: int) -> None:

@@ -20,6 +20,7 @@ from vincula.kernels.lanes.vector import (
     first_of,
     less,
     load,
+    nearest,
     neg,
     select,
     sqrt,
@@ -45,6 +46,7 @@ from vincula.traced import (
     LARGER,
     LOGARITHM,
     MULTIPLY,
+    NEAREST,
     NEGATE,
     NOT_ABOVE,
     POWER,
@@ -77,6 +79,8 @@ def _arithmetic(op: int, x: Lane, y: Lane) -> Lane:
         return select(less(x, y), y, x)
     if op == SMALLER:
         return select(less(y, x), y, x)
+    if op == NEAREST:
+        return nearest(x)
     return sqrt(x)
 
 
@@ -135,7 +139,7 @@ def _step(w: Slots, op: int, target: int, a: int, b: int, c: int, holds: int, wi
     elif op == IS_LESS:
         one = load(w, holds + 1, z)
         store(w, target, select(less(load(w, a, z), load(w, b, z)), one, z))
-    elif op <= ROOT or op in (LARGER, SMALLER):
+    elif op <= ROOT or op in (LARGER, SMALLER, NEAREST):
         store(w, target, _arithmetic(op, load(w, a, z), load(w, b, z)))
     elif op in (POWER, HYPOTENUSE, ANGLE):
         for lane in range(width):
