@@ -87,7 +87,7 @@ def test_a_cost_that_is_infinite_everywhere_says_why(folder: Path) -> None:
     """One motor for two motions: the coupler is loose in every design."""
     (folder / "loose.yaml").write_text(GOOD.replace("ties:", "active: [o1]\nties:"))
     problem = vc.read_design(folder / "loose.yaml").problem.by_reference()
-    words = "'no finite cost' killed 13.*moves in 1 way with all motors locked: give the mechanism more motors"
+    words = "'no finite cost' killed 13.*moves in 1 way with all motors locked: give .* more motors"
     with pytest.raises(vc.DesignError, match=words):
         problem.optimize(population=6, generations=1, polish=False)
 
