@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from vincula.design.log import Log
     from vincula.design.problem import DesignProblem
 
-BATCH: Final = 8192
+BATCH: Final = 32768
 """Configurations of one batch, of all its designs together: a fraction of a second in lanes."""
 LEAST: Final = 64
 """Least designs of one batch, which is what an interruption can cost."""

@@ -240,6 +240,7 @@ class DesignProblem:
             start=self.start,
             parameters=parameters,
             path=self.path,
+            alike=True,
         )
         return Lanes(compiled, found, parameters, usual["freedom"], usual)
 

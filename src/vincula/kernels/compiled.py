@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -89,6 +90,7 @@ class CompiledMechanism:
         parameters: Mapping[str, ArrayLike] | None = None,
         threads: int | None = None,
         path: PathName = "auto",
+        alike: bool = False,
     ) -> Evaluation:
         """Chosen quantities over a batch of configurations.
 
@@ -109,6 +111,9 @@ class CompiledMechanism:
             parameters: Values of the parameters that the mechanism is built from, one a lane.
             threads: Threads to use; by default one a core.
             path: `auto`, `lanes` or `reference`.
+            alike: Whether configurations of other ranks than usual may be computed together, where
+                parameters are given: quicker where singular ones are many.  The last digits of theirs then
+                depend on what else is in the batch.
 
         Returns:
             Named arrays and a status; nothing is raised for a configuration that is open, does not
@@ -136,7 +141,7 @@ class CompiledMechanism:
                 return quick
         settings = parameters or {}
         self.variants.names_checked(settings)
-        batch = batch_of(self.mechanism, given, configurations, start, settings)
+        batch = replace(batch_of(self.mechanism, given, configurations, start, settings), alike=alike)
         arrays, reasons = self._runner.run(plan, batch, path, threads)
         shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in arrays.items()}
         return Evaluation(batch.shape, plan.by_name, shaped, reasons)

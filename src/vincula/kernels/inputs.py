@@ -30,6 +30,7 @@ class Batch:
         first: Where the first lane of every stretch starts; None for home.
         stretch: Lanes that follow each other: the length of the last dimension.
         parameters: Values a lane, by name.
+        alike: Whether lanes with other ranks than usual may be computed together.
     """
 
     shape: tuple[int, ...]
@@ -39,6 +40,7 @@ class Batch:
     first: Vector | None
     stretch: int
     parameters: Mapping[str, Vector]
+    alike: bool = False
 
     @property
     def lanes(self) -> int:

@@ -18,6 +18,7 @@ from vincula.kernels.one_by_one import Reasons, evaluate_one_by_one
 from vincula.kernels.plans import Plan
 from vincula.kernels.quantities import quaternion_places
 from vincula.kernels.reference_path import Arrays
+from vincula.kernels.strata import evaluate_alike
 from vincula.kernels.traced_geometry import REFUSED, UNKNOWN
 from vincula.kernels.variants import Variants
 from vincula.mechanism.mechanism import Mechanism
@@ -56,7 +57,10 @@ def evaluate_in_lanes(
     if "configuration" in arrays and len(unknown):
         arrays["configuration"][unknown] = np.nan
     arrays["status"][refused] = FAILED
-    evaluate_one_by_one(variants, plan, batch, arrays, unknown[~refused[unknown]].tolist(), reasons)
+    left = unknown[~refused[unknown]]
+    if batch.alike and constants is not None:
+        left = evaluate_alike(writers, variants, plan, batch, values, constants, left, arrays, threads)
+    evaluate_one_by_one(variants, plan, batch, arrays, left.tolist(), reasons)
 
 
 def write_places(writers: LaneWriters, values: Matrix, constants: Matrix | None, arrays: Arrays) -> None:
