@@ -110,6 +110,47 @@ def test_the_command_writes_what_analyze_reads(folder: Path, monkeypatch: pytest
     assert len(rows) == report["search"]["evaluated"]
 
 
+def test_the_best_file_has_the_weights_it_was_judged_by(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The cost of the report is that of the efficiencies which `analyze` prints for the file."""
+    monkeypatch.chdir(folder)
+    text = GOOD.replace("ties:", 'weights: "twist=1,1,4"\nties:', 1)
+    text = text.replace('{quantity: "kinematic.condition:translation", over: mean}', "{measure: sphere}")
+    Path("sphere.yaml").write_text(text)
+    command = ["design", "sphere.yaml", "--path", "reference", "--json", "--quiet", "-o", "best.yaml"]
+    report = json.loads(CliRunner().invoke(cli, command, catch_exceptions=False).stdout)
+    told = CliRunner().invoke(cli, ["analyze", "best.yaml", "--json"], catch_exceptions=False)
+    values = json.loads(told.stdout)["kinematic"]["efficiencies"]
+    cost = (values[0] - 1.0) ** 2 + (values[-1] - 1.0) ** 2
+    assert report["best"]["value"] == pytest.approx(cost, rel=1e-9)
+
+
+def test_a_member_that_is_not_there_loses_no_report(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pymoo")
+    monkeypatch.chdir(folder)
+    one = '{quantity: "kinematic.condition:translation", over: mean}'
+    both = f'[{one}, {{quantity: "kinematic.smallest"}}]'
+    text = GOOD.replace(one, both).replace(", samples: 4", "")
+    Path("two.yaml").write_text(text)
+    command = [
+        "design",
+        "two.yaml",
+        "--path",
+        "reference",
+        "--json",
+        "--quiet",
+        "-o",
+        "b.yaml",
+        "--member",
+        "99",
+    ]
+    found = CliRunner().invoke(cli, command)
+    assert found.exit_code == 2
+    members = json.loads(found.stdout)["members"]
+    assert f"there are {len(members)} compromises" in found.stderr
+
+
 def test_exit_codes(folder: Path) -> None:
     (folder / "none.yaml").write_text(GOOD.replace("most: 2.9", "most: 0.1"))
 

@@ -106,11 +106,11 @@ def design_command(
         problem.path = path
         with ProgressLine(quiet=quiet) as progress:
             found = _found(problem, wanted, log_file, progress)
+        if as_json:
+            print_json(found.to_dict())
+        else:
+            click.echo(text_of(found))
         _write(found, output, member, figure, data)
-    if as_json:
-        print_json(found.to_dict())
-    else:
-        click.echo(text_of(found))
 
 
 def _problem(file: str, over: str | None, points: str | None) -> tuple[DesignProblem, Wanted]:
@@ -211,17 +211,21 @@ def _write(
 
 
 def _best(found: Optimum | Landscape | Front, member: int) -> Any:
-    """The mechanism to write."""
+    """The mechanism to write, with the weights that it was judged by."""
     from vincula.design.front import Front
     from vincula.design.optimum import Optimum
 
+    problem = found.problem
     if isinstance(found, Optimum):
-        return found.mechanism()
-    if isinstance(found, Front):
+        made = found.mechanism()
+    elif isinstance(found, Front):
         if member > len(found.members):
             raise click.UsageError(f"--member {member}: there are {len(found.members)} compromises")
-        return found.problem.mechanism(found.members.designs[member - 1])
-    return found.problem.mechanism(list(found.best()[0].values()))
+        made = problem.mechanism(found.members.designs[member - 1])
+    else:
+        made = problem.mechanism(list(found.best()[0].values()))
+    weights = problem.objectives[0].weights or problem.weights
+    return made if weights is None else made.with_weights(weights)
 
 
 def _rows(problem: DesignProblem, judged: Judged) -> list[list[Any]]:

@@ -106,6 +106,7 @@ def _front(found: Front, paper: float) -> Figure:
     cloud.plot(able[:, 0], able[:, 1], ".", color=GREY, markersize=2.0, label="evaluated")
     values = found.members.objectives
     cloud.plot(values[:, 0], values[:, 1], "o", color=BLUE, markersize=3.0, label="not beaten")
+    _zoom(cloud, values[:, :2])
     cloud.set_xlabel(f"{one.name} ({one.better} is better)")
     cloud.set_ylabel(f"{two.name} ({two.better} is better)")
     last = len(found.members) - 1
@@ -117,6 +118,17 @@ def _front(found: Front, paper: float) -> Figure:
     _ellipses([ellipses], sights)
     _legends(cloud, ellipses)
     return figure
+
+
+def _zoom(axes: Axes, values: Matrix) -> None:
+    """Show the front and what lies near it; far worse designs would squeeze it into a corner."""
+    known = values[np.isfinite(values).all(axis=1)]
+    if len(known) < 2:
+        return
+    low, high = known.min(axis=0), known.max(axis=0)
+    span = np.where(high > low, high - low, np.maximum(np.abs(high), 1e-12))
+    axes.set_xlim(low[0] - 0.5 * span[0], high[0] + 0.5 * span[0])
+    axes.set_ylim(low[1] - 0.5 * span[1], high[1] + 0.5 * span[1])
 
 
 def _optimum(found: Optimum, paper: float) -> Figure:
