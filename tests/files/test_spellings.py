@@ -80,3 +80,61 @@ def test_friction_of_rolling_is_no_rolling_contact(tmp_path: Path) -> None:
     assert len(loaded(tmp_path, text, "robot.sdf").joints) == len(
         loaded(tmp_path, four_bar.SDF_GRAPH, "robot.sdf").joints
     )
+
+
+def test_the_oldest_spelling_of_urdf_plus_is_the_point_and_the_coupling(tmp_path: Path) -> None:
+    point = (
+        '<{tag} name="o3"{kind}><{a} link="coupler">{first}</{a}>{second}<{b} link="rocker">{third}</{b}>'
+        "{fourth}</{tag}>"
+    )
+    one, two = 'xyz="2 1 0"', 'xyz="-1 2 0"'
+    old = point.format(
+        tag="constraint", kind=' type="position"', a="predecessor", b="successor",
+        first=f"<origin {one}/>", second="", third=f"<origin {two}/>", fourth="",
+    )  # fmt: skip
+    oldest = point.format(
+        tag="loop_constraint", kind="", a="parent", b="child", first="", second=f"<parent_origin {one}/>",
+        third="", fourth=f"<child_origin {two}/>",
+    )  # fmt: skip
+    gear = '<{0} name="g"><{1} link="coupler"/><{2} link="rocker"/><{3} value="3"/></{0}>'
+    for loop, words in (
+        (old, ("coupling", "predecessor", "successor", "ratio")),
+        (oldest, ("joint_constraint", "parent", "child", "gear_ratio")),
+    ):
+        robot = loaded(tmp_path, four_bar.TREE + loop)
+        (closure,) = [joint for joint in robot.joints if joint.closure]
+        assert closure.frame_on_first.position == pytest.approx([2.0, 1.0, 0.0])
+        assert closure.frame_on_second.position == pytest.approx([-1.0, 2.0, 0.0])
+        assert closure.type == "spherical"
+        (coupling,) = loaded(tmp_path, four_bar.TREE + gear.format(*words)).couplings
+        assert coupling.rates == {"o1": 3.0, "o2": 3.0, "o4": -1.0}
+
+
+FLOATING = (
+    '<robot xmlns:drake="http://drake.mit.edu" name="walker"><link name="floor"/><link name="trunk"/>'
+    '<link name="leg"/><joint name="weld" type="fixed"><parent link="world"/><child link="floor"/></joint>'
+    '<joint name="hip" type="continuous"><parent link="trunk"/><child link="leg"/></joint></robot>'
+)
+
+
+def test_drake_takes_the_world_and_floating_trees_for_granted(tmp_path: Path) -> None:
+    path = tmp_path / "walker.urdf"
+    path.write_text(FLOATING, encoding="utf-8")
+    robot, report = load_with_report(path)
+    assert {joint.name: (joint.type, joint.first, joint.second) for joint in robot.joints} == {
+        "weld": ("fixed", "ground", "floor"),
+        "hip": ("revolute", "trunk", "leg"),
+        "trunk.floating": ("free", "ground", "trunk"),
+    }
+    assert robot.active == ("hip",)
+    assert sum("as Drake takes it" in note for note in report.notes) == 2
+    path.write_text(FLOATING.replace(' xmlns:drake="http://drake.mit.edu"', ""), encoding="utf-8")
+    with pytest.raises(vc.FileError, match="'world', which does not exist"):
+        vc.load(path)
+
+
+def test_an_srdf_file_belongs_beside_a_urdf_file(tmp_path: Path) -> None:
+    path = tmp_path / "robot.srdf"
+    path.write_text('<robot name="r"><group name="g"><joint name="j"/></group></robot>', encoding="utf-8")
+    with pytest.raises(vc.FileError, match=r"robot.srdf:1:1: .*an SRDF file, .*--loops"):
+        vc.load(path)

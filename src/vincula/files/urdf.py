@@ -13,6 +13,8 @@ from typing import Final
 from vincula.arrays import Vector
 from vincula.files.contents import account_elements, account_repairs
 from vincula.files.dialects import reader_of_element, side_files
+from vincula.files.dialects.drake_world import declare_world, float_in_world
+from vincula.files.dialects.srdf import PARTS as SRDF_PARTS
 from vincula.files.dialects.unknown import read_unknown
 from vincula.files.limits import DEFAULT_LIMITS, Limits
 from vincula.files.packages import Packages, record_meshes
@@ -135,6 +137,11 @@ class UrdfReader:
                 self.report.ignored(element.tag, element.name, _WITHOUT_KINEMATICS[element.tag], of=element)
             else:
                 later.append(element)
+        if not self.draft.links and any(part.tag in SRDF_PARTS for part in later):
+            expected = "a URDF file: name this one with --loops beside it"
+            self.problems.add(root.place, got="an SRDF file", expected=expected)
+            self.problems.refuse()
+        declare_world(root, self.draft)
         for element in later:
             if element.tag == "joint":
                 self._joint(element)
@@ -143,6 +150,7 @@ class UrdfReader:
                 read_transmission(element, self.draft, self.values, self.report)
             elif element.tag != "joint":
                 reader_of_element(element)(element, self.draft, self.values, self.report)
+        float_in_world(root, self.draft)
 
     def finish(self) -> Mechanism:
         """The mechanism of what was read."""

@@ -15,7 +15,7 @@ from vincula.files.dialects.isaac import read_fixed_frame, read_loop_joint
 from vincula.files.dialects.ros2_control import read_ros2_control
 from vincula.files.dialects.srdf import SrdfFile
 from vincula.files.dialects.unknown import read_unknown
-from vincula.files.dialects.urdf_plus import read_coupling, read_loop
+from vincula.files.dialects.urdf_plus import read_coupling, read_loop, read_loop_constraint
 from vincula.files.dialects.urdfdom_constraint import read_constraint
 from vincula.files.limits import Limits
 from vincula.files.problems import shown
@@ -47,12 +47,17 @@ def reader_of_element(element: Element) -> ElementReader:
 
 def _not_understood(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
     """Nothing is dropped silently: an unknown element may be a loop."""
-    read_unknown(element, draft, values, report, ("link", "joint", "transmission", "material", *_READERS))
+    known = ("link", "joint", "transmission", "material", *(tag for tag in _READERS if tag not in _OUTDATED))
+    read_unknown(element, draft, values, report, known)
 
 
+_OUTDATED: Final = ("loop_constraint", "joint_constraint")
+"""Read, but not suggested."""
 _READERS: Final[dict[str, ElementReader]] = {
     "loop": read_loop,
     "coupling": read_coupling,
+    "loop_constraint": read_loop_constraint,
+    "joint_constraint": read_coupling,
     "loop_joint": read_loop_joint,
     "fixed_frame": read_fixed_frame,
     "constraint": read_constraint,

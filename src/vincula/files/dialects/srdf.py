@@ -27,6 +27,8 @@ _IGNORED: Final = {
     "joint_property": "settings of motion planners",
     "chain": "groups are for motion planners",
 }
+PARTS: Final = ("passive_joint", *_IGNORED)
+"""What an SRDF file holds."""
 
 
 class SrdfFile:

@@ -13,7 +13,9 @@ times the sum over the predecessor's way is the sum over the successor's.
 The exporter ACDC4Robot writes `<predecessor name="...">` and `<sucessor name="...">`, which is read as meant.
 
 Older files write `<constraint type="position">` for a point that coincides and `<constraint type="rolling">`
-with a ratio for a coupling; a ratio that is missing is 1.  An attribute `independent` of a joint chooses
+with a ratio for a coupling; a ratio that is missing is 1.  The oldest write `<loop_constraint>` for the
+point, with parent, parent_origin, child and child_origin, and `<joint_constraint>` with parent, child and
+gear_ratio for the coupling.  An attribute `independent` of a joint chooses
 coordinates, not motors; it is not used.
 
 Source: src/Urdf/constraint.cpp and src/Dynamics/ClusterTreeParsing.cpp of ROAM-Lab-ND/generalized_rbda.
@@ -28,10 +30,11 @@ import numpy as np
 from vincula.files.dialects.closing import WITH_AXIS, close_loop, link_named, loop_type, only_child
 from vincula.files.problems import shown
 from vincula.files.report import LoadReport
-from vincula.files.urdf_places import origin
+from vincula.files.urdf_places import origin, placement
 from vincula.files.xmltree import Element
 from vincula.files.xmlvalues import XmlValues
 from vincula.mechanism.parts import Coupling
+from vincula.spatial.poses import Pose
 
 if TYPE_CHECKING:
     from vincula.files.robot_graph import DraftJoint, RobotDraft
@@ -97,13 +100,31 @@ def read_old_constraint(element: Element, draft: RobotDraft, values: XmlValues, 
         close_loop(element, draft, report, "spherical", ((links[0], poses[0]), (links[1], poses[1])))
 
 
+def read_loop_constraint(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
+    """Add one `<loop_constraint>`: a point of the parent and one of the child that coincide."""
+    tags = ("parent", "child")
+    values.only(element, (*tags, *(f"{tag}_origin" for tag in tags)))
+    values.name(element)
+    ends: list[tuple[str, Pose]] = []
+    for tag in tags:
+        end, place = only_child(element, tag, values), only_child(element, f"{tag}_origin", values)
+        link = link_named(end, draft, values) if end is not None else ""
+        pose = placement(place, values) if place is not None else None
+        if link and pose is not None:
+            ends.append((link, pose))
+    if len(ends) == 2:
+        close_loop(element, draft, report, "spherical", (ends[0], ends[1]))
+
+
 def read_coupling(element: Element, draft: RobotDraft, values: XmlValues, report: LoadReport) -> None:
-    """Add one `<coupling>` to the draft."""
-    values.only(element, ("predecessor", "successor", "ratio"))
+    """Add one `<coupling>` to the draft, or what older files write for it."""
+    oldest = element.tag == "joint_constraint"
+    tags = ("parent", "child", "gear_ratio") if oldest else ("predecessor", "successor", "ratio")
+    values.only(element, tags)
     name = values.name(element)
-    ends = [only_child(element, tag, values) for tag in ("predecessor", "successor")]
+    ends = [only_child(element, tag, values) for tag in tags[:2]]
     old = element.tag == "constraint" and not any(element.find_all("ratio"))
-    found = None if old else only_child(element, "ratio", values)
+    found = None if old else only_child(element, tags[2], values)
     ratio = (1.0 if old else None) if found is None else values.number(found, "value")
     if found is not None and "value" not in found.attributes:
         values.problems.add(found.place, "attribute 'value' is missing")
@@ -132,7 +153,7 @@ def read_coupling(element: Element, draft: RobotDraft, values: XmlValues, report
         return
     draft.couplings.append(Coupling(name, rates, references=dict.fromkeys(rates, 0.0)))
     terms = " + ".join(f"{c:g} {joint}" for joint, c in rates.items())
-    report.used("coupling", name, f"{terms} = 0".replace("+ -", "- "))
+    report.used(element.tag, name, f"{terms} = 0".replace("+ -", "- "))
 
 
 def _way_down(draft: RobotDraft, link: str) -> list[DraftJoint]:
