@@ -138,3 +138,32 @@ def test_an_srdf_file_belongs_beside_a_urdf_file(tmp_path: Path) -> None:
     path.write_text('<robot name="r"><group name="g"><joint name="j"/></group></robot>', encoding="utf-8")
     with pytest.raises(vc.FileError, match=r"robot.srdf:1:1: .*an SRDF file, .*--loops"):
         vc.load(path)
+
+
+MIMIC = '<mimic joint="{}" multiplier="2" offset="0.5"/>'
+
+
+def chain(first: str, second: str, inside: str) -> str:
+    """Two joints in a row; the second one mimics the first."""
+    return (
+        '<link name="a"/><link name="b"/><link name="c"/>'
+        f'<joint name="j" type="{first}"><parent link="a"/><child link="b"/></joint>'
+        f'<joint name="k" type="{second}"><parent link="b"/><child link="c"/>{inside}</joint>'
+    )
+
+
+def test_joints_that_exporters_have_fixed_keep_their_mimic(tmp_path: Path) -> None:
+    """A fixed follower follows nothing; a fixed leader holds its follower at the offset."""
+    assert loaded(tmp_path, chain("revolute", "fixed", MIMIC.format("j"))).couplings == ()
+    assert load_with_report(tmp_path / "robot.urdf")[1].counts()["mimic"]["ignored"] == 1
+    held = loaded(tmp_path, chain("fixed", "revolute", MIMIC.format("j")))
+    (coupling,) = held.couplings
+    assert coupling.rates == {"k": 1.0}
+    assert held.active == ()
+    assert held.close(near=held.home)["k"] == pytest.approx([0.5], abs=1e-12)
+
+
+@pytest.mark.parametrize(("first", "second"), [("floating", "revolute"), ("revolute", "spherical")])
+def test_a_joint_without_a_single_value_cannot_mimic(first: str, second: str, tmp_path: Path) -> None:
+    with pytest.raises(vc.FileError, match=r"robot.urdf:\d+:\d+: .*has no single value"):
+        loaded(tmp_path, chain(first, second, MIMIC.format("j")))

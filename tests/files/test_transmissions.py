@@ -72,3 +72,14 @@ def test_a_known_type_with_the_wrong_joints_is_refused(tmp_path: Path) -> None:
     text = '<transmission name="t"><type>DifferentialTransmission</type><joint name="j1"/></transmission>'
     with pytest.raises(vc.UnsupportedFeatureError, match="with 1 joints and 0 actuators"):
         loaded(tmp_path, text)
+
+
+def test_a_transmission_of_a_fixed_joint_is_ignored(tmp_path: Path) -> None:
+    """Exporters of reduced models fix joints and leave their transmissions."""
+    path = tmp_path / "robot.urdf"
+    arm = ARM.replace('name="j2" type="continuous"', 'name="j2" type="fixed"')
+    inside = '<link name="l0"/>' + arm + simple("j1", "m1") + simple("j2", "m2")
+    path.write_text(urdf(inside), encoding="utf-8")
+    robot, report = load_with_report(path)
+    assert dict(robot.motors) == {"m1": "j1"}
+    assert report.counts()["transmission"] == {"total": 2, "used": 1, "ignored": 1, "repaired": 0}

@@ -208,7 +208,8 @@ class RobotDraft:
 
     def _check_mimics(self) -> None:
         """A joint that follows itself over others has no leader."""
-        follows = {c.axes[0]: c.axes[1] for c in self.couplings if c.name.startswith("mimic:")}
+        mimics = [c.axes for c in self.couplings if c.name.startswith("mimic:") and len(c.axes) > 1]
+        follows = {axes[0]: axes[1] for axes in mimics}
         places = {joint.name: joint.place for joint in self.joints}
         for start in follows:
             chain = [start]

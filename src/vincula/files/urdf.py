@@ -65,6 +65,7 @@ _JOINT_PARTS: Final = {
     "gazebo": "simulator settings",
     "hardwareInterface": "no part of a mechanism",
 }
+_WITH_ONE_VALUE: Final = ("revolute", "continuous", "prismatic")
 _READ_IN_JOINT: Final = ("parent", "child", "origin", "axis", "limit", "mimic")
 
 
@@ -226,7 +227,7 @@ class UrdfReader:
 
     def _limits(self, element: Element, written: str) -> tuple[JointLimits, ...]:
         found = next(element.find_all("limit"), None)
-        if found is None or written not in ("revolute", "continuous", "prismatic"):
+        if found is None or written not in _WITH_ONE_VALUE:
             return ()
         got = {key: self.values.number(found, key) for key in ("lower", "upper", "velocity", "effort")}
         lower, upper = got["lower"], got["upper"]
@@ -253,12 +254,20 @@ class UrdfReader:
                 expected="another joint of the file", choices=[j for j in joints if j != name],
             )  # fmt: skip
             return
-        self.draft.couplings.append(
-            Coupling(
-                f"mimic:{name}",
-                {name: 1.0, leader: -factor},
-                polynomial=(offset,),
-                references={name: 0.0, leader: 0.0},
+        kinds = {joint: written.get("type", "") for joint, written in joints.items()}
+        if kinds[name] == "fixed":
+            self.report.ignored("mimic", name, "the joint is fixed: it follows nothing", of=found)
+            return
+        several = [joint for joint in (name, leader) if kinds[joint] not in (*_WITH_ONE_VALUE, "fixed")]
+        if several:
+            self.problems.add(
+                found.place,
+                f"joint {shown(several[0])} of type {shown(kinds[several[0]])} has no single value",
             )
+            return
+        # A fixed leader stays at zero: the follower is held at the offset.
+        rates = {name: 1.0} if kinds[leader] == "fixed" else {name: 1.0, leader: -factor}
+        self.draft.couplings.append(
+            Coupling(f"mimic:{name}", rates, polynomial=(offset,), references=dict.fromkeys(rates, 0.0))
         )
         self.report.used("mimic", name, f"{name} = {factor:g} x {leader} + {offset:g}")

@@ -56,6 +56,9 @@ def _one_motor(
     element: Element, joint: str, actuators: list[str], draft: RobotDraft, report: LoadReport
 ) -> None:
     """A motor called as its actuator is, or as its joint where another joint has that motor already."""
+    if any(one.name == joint and one.type == "fixed" for one in draft.joints):
+        report.ignored("transmission", element.name, f"joint {joint} is fixed", of=element)
+        return
     motors = draft.motors if draft.motors is not None else {}
     name = actuators[0] if actuators and actuators[0] else joint
     other = motors.get(name, joint)
