@@ -15,6 +15,7 @@ from tests.sweep.conftest import five_bar_sweep, serial_sweep
 
 import vincula as vc
 from vincula.sweep.export import export
+from vincula.sweep.ledger import MOST_REASONS
 
 Undisturbed = Callable[[str], Path]
 
@@ -229,3 +230,15 @@ def test_pictures(undisturbed: Undisturbed) -> None:
     with pytest.raises(vc.ModelError, match="two variables"):
         found.vincula.map("closure.residual", "o1", "o1")
     pyplot.close("all")
+
+
+def test_reasons_beyond_those_that_are_kept(tmp_path: Path) -> None:
+    """Every open point has a reason of its own; of a chunk the first ones are kept, and that is said."""
+    linkage = vc.load("example:five-bar").with_active(["o1", "o5"])
+    count = MOST_REASONS + 20
+    points = {"o1": [-0.05], "o5": [0.0, *np.linspace(0.2, 3.1, count)]}
+    data = vc.Sweep(linkage, points, ["summary"], given="configuration").run(tmp_path / "a.zarr")
+    assert data.status().counts["open"] == count + 1
+    assert "open" in data.reason((0, 0))
+    assert data.reason((0, 5)) != data.reason((0, 6))
+    assert f"first {MOST_REASONS} reasons" in data.reason((0, count))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vincula.errors import MissingExtraError, ModelError
-from vincula.kernels.evaluation import STATUS_NAMES
+from vincula.kernels.evaluation import OK, STATUS_NAMES
 from vincula.sweep.chunks import Chunking
 from vincula.sweep.finishing import gathered
 from vincula.sweep.foreign import refuse_foreign
 from vincula.sweep.layout import NOT_DONE
-from vincula.sweep.ledger import Ledger, Reason, Record
+from vincula.sweep.ledger import MOST_REASONS, Ledger, Reason, Record
 from vincula.sweep.running import Places
 
 if TYPE_CHECKING:
@@ -75,27 +76,23 @@ class SweepData:
         Raises:
             SweepError: There is no ledger, or it is damaged.
         """
+        counts = dict.fromkeys(STATUS_NAMES, 0)
+        failed: list[Record] = []
+        done = points_done = 0
         with Ledger(Places(self.path).ledger) as ledger:
-            records = list(ledger.records())
             manifest = ledger.manifest
+            chunking = Chunking(tuple(manifest["shape"]), tuple(manifest["block"]))
+            for record in ledger.records():
+                done += record.state == "done"
+                failed += [record] if record.state == "failed" else []
+                points_done += math.prod(chunking.extent(record.chunk))
+                for name, count in record.counts.items():
+                    counts[name] += count
         share = manifest.get("shard") or [1, 1]
         own = range(share[0] - 1, manifest["chunks"], share[1])
-        chunking = Chunking(tuple(manifest["shape"]), tuple(manifest["block"]))
-        counts = dict.fromkeys(STATUS_NAMES, 0)
-        for record in records:
-            for name, count in record.counts.items():
-                counts[name] += count
-        every = int(np.prod(manifest["shape"], dtype=object))
-        own_points = every if share[1] == 1 else sum(int(np.prod(chunking.extent(k))) for k in own)
-        return SweepStatus(
-            len(own),
-            sum(record.state == "done" for record in records),
-            tuple(record for record in records if record.state == "failed"),
-            own_points,
-            sum(int(np.prod(chunking.extent(record.chunk))) for record in records),
-            counts,
-            manifest,
-        )
+        every = math.prod(manifest["shape"])
+        points = every if share[1] == 1 else sum(math.prod(chunking.extent(k)) for k in own)
+        return SweepStatus(len(own), done, tuple(failed), points, points_done, counts, manifest)
 
     def reason(self, index: int | tuple[int, ...]) -> str:
         """Why a point is not ok, in words; empty when it is, or is not computed.
@@ -123,7 +120,11 @@ class SweepData:
         for reason in record.reasons if record else ():
             if reason.first <= own <= reason.last:
                 return reason.text
-        return ""
+        if record is None or len(record.reasons) < MOST_REASONS or own < record.reasons[-1].last:
+            return ""
+        if int(self.to_xarray()["status"][place]) in (OK, NOT_DONE):
+            return ""
+        return f"only the first {MOST_REASONS} reasons of a chunk are kept: evaluate this point alone"
 
     def to_xarray(self) -> xarray.Dataset:
         """The data set, opened lazily where dask is installed.

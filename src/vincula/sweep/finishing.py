@@ -39,10 +39,9 @@ def finish(places: Places, ledger: Ledger, folder: DurableFolder) -> bool:
     Raises:
         OSError: It cannot be written.
     """
-    records = list(ledger.records())
-    if len(records) < ledger.manifest["chunks"]:
+    if ledger.count() < ledger.manifest["chunks"]:
         return False
-    reasons = gathered(reason for record in records for reason in record.reasons)
+    reasons = gathered(reason for record in ledger.records() for reason in record.reasons)
     if reasons:
         root, status = places.data / "zarr.json", places.data / "status" / "zarr.json"
         whole, own = with_reasons(root.read_bytes(), status.read_bytes(), reasons)

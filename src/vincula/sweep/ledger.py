@@ -24,8 +24,10 @@ from vincula.errors import SweepError
 
 FORMAT: Final = 1
 """Version of the ledger's tables."""
-MOST_REASONS: Final = 1000
-"""Stretches of points of a chunk whose reasons are kept; the rest is counted by their status alone."""
+MOST_REASONS: Final = 200
+"""Stretches of points of a chunk whose reasons are kept; the rest is told by their status alone.
+
+Words about whole configurations are found one by one, which takes milliseconds."""
 
 State = Literal["done", "failed"]
 
@@ -153,6 +155,15 @@ class Ledger:
                 f"SELECT {_COLUMNS} FROM chunk ORDER BY chunk"  # noqa: S608  a constant
             ):
                 yield self._record(row)
+
+    def count(self) -> int:
+        """Number of chunks that are done or failed.
+
+        Raises:
+            SweepError: The ledger is damaged.
+        """
+        with self._believed():
+            return int(self._base.execute("SELECT COUNT(*) FROM chunk").fetchone()[0])
 
     def record(self, chunk: int) -> Record | None:
         """What is known of one chunk; None when it is not done.

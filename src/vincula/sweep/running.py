@@ -188,15 +188,15 @@ class _Run:
     def _checked(self) -> set[int]:
         """Chunks whose files are what the ledger says; the others, and those that failed, are forgotten."""
         kept, gone = set(), []
-        records = list(self._ledger.records())
-        for k, record in enumerate(records):
+        count = self._ledger.count()
+        for k, record in enumerate(self._ledger.records()):
             if record.state == "done" and trusted(self._places.data, record):
                 kept.add(record.chunk)
                 self._count(record)
             else:
                 gone.append(record.chunk)
             if k % 16 == 0:
-                self._tell(Progress("checking", k, len(records)))
+                self._tell(Progress("checking", k, count))
         if gone:
             self._ledger.forget(gone)
         self._before = self._done

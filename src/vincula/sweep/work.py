@@ -80,15 +80,14 @@ class Work:
         """
         if not self.closes:
             found = self._evaluation(values, None, threads)
-            return Block({name: found[name] for name in found.names}, _reasons(found))
+            return Block({name: found[name] for name in found.names}, _reasons(found, None))
         order = self.order(values, extent)
         found = self._evaluation(values[order], self.inputs.start.flat if start is None else start, threads)
         arrays: dict[str, Array] = {}
         for name in found.names:
             arrays[name] = np.empty_like(found[name])
             arrays[name][order] = found[name]
-        told = [(int(order[k]), found.reason(int(k))) for k in np.flatnonzero(found.status != OK)]
-        return Block(arrays, _joined(sorted(told)))
+        return Block(arrays, _reasons(found, order))
 
     def _evaluation(self, values: Matrix, start: Vector | None, threads: int | None) -> Evaluation:
         rows, parameters = self.inputs.rows(values)
@@ -102,14 +101,20 @@ class Work:
         )
 
 
-def _reasons(found: Evaluation) -> tuple[tuple[int, int, str], ...]:
-    return _joined([(int(k), found.reason(int(k))) for k in np.flatnonzero(found.status != OK)])
+def _reasons(found: Evaluation, order: NDArray[np.int64] | None) -> tuple[tuple[int, int, str], ...]:
+    """Stretches of points with one reason, in the order of the points.
 
-
-def _joined(told: list[tuple[int, str]]) -> tuple[tuple[int, int, str], ...]:
-    """Consecutive points with the same reason as one stretch; not more than the ledger keeps."""
+    Not more than the ledger keeps, and none is asked for beyond them: where nearly all points are not ok,
+    words would take longer than numbers.
+    """
+    status, visited = found.status, None
+    if order is not None:
+        visited = np.empty_like(order)
+        visited[order] = np.arange(len(order))
+        status = status[visited]
     joined: list[tuple[int, int, str]] = []
-    for point, text in told:
+    for point in np.flatnonzero(status != OK).tolist():
+        text = found.reason(point if visited is None else int(visited[point]))
         if joined and joined[-1][1] == point - 1 and joined[-1][2] == text:
             joined[-1] = (joined[-1][0], point, text)
         elif len(joined) < MOST_REASONS:

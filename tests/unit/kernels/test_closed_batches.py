@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import vincula as vc
+from vincula.kernels.reference_path import ReferencePath
 
 pytest.importorskip("numba")
 
@@ -33,6 +34,23 @@ def test_motors_driven_in_and_out_of_reach() -> None:
     assert np.isnan(lanes["kinematic.efficiencies"][~ok]).all()
     assert "close" in lanes.reason(int(np.flatnonzero(~ok)[0]))
     assert lanes["closure.residual"][ok].max() < 1e-12
+
+
+def test_lanes_that_do_not_close_are_not_evaluated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They hold the singular configuration at the border of the workspace, which only milliseconds decide."""
+    linkage = vc.load("example:five-bar").with_active(["o1", "o5"])
+    compiled = vc.compile(linkage)
+    border = linkage.follow([{"o1": 0.9, "o5": 0.9}], limits=False).end
+    inputs = np.linspace([0.9, 0.9], [0.95, 0.95], 40)
+    asked: list[int] = []
+    fill = ReferencePath.fill
+    monkeypatch.setattr(ReferencePath, "fill", lambda self, *rest: asked.append(0) or fill(self, *rest))
+    found = compiled.evaluate(inputs, WANTED, given="motors", start=border.flat)
+    assert set(found.status_counts) == {"no-closure"}
+    assert not asked
+    assert np.isnan(found["kinematic.efficiencies"]).all()
+    assert np.isnan(found["configuration"]).all()
+    assert "gaps stay open" in found.reason(39)
 
 
 def test_poses_of_a_platform() -> None:
