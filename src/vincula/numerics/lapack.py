@@ -15,7 +15,7 @@ from scipy.linalg.lapack import dgejsv, dgeqp3, dgeqrf, dgesvd, dorgqr, dormqr, 
 from vincula.arrays import Matrix, Vector, frozen
 from vincula.errors import VinculaError
 
-_ROW_SCALED_JACOBI = {"joba": 2, "jobu": 0, "jobv": 0, "jobt": 1, "jobp": 0}
+_COLUMN_SCALED_JACOBI = {"joba": 0, "jobu": 0, "jobv": 0, "jobt": 1, "jobp": 0}
 
 
 @lru_cache(maxsize=256)
@@ -46,15 +46,20 @@ def svd(matrix: Matrix) -> tuple[Matrix, Vector, Matrix]:
 def jacobi_svd(matrix: Matrix) -> tuple[Matrix, Vector, Matrix]:
     """Thin decomposition U (m x n), singular values, V (n x n) of a matrix with m >= n.
 
-    One-sided Jacobi after row and column pivoting (gejsv, job 'F'): the error of every row is small
-    against that row, so graded matrices D1 B D2 keep the relative accuracy of small singular values.
+    One-sided Jacobi after row and column pivoting (gejsv): the error of every row is small against that row,
+    so graded matrices D1 B D2 keep the relative accuracy of small singular values.  Rows are put in order
+    here (job 'C'): gejsv does the same (job 'F') through laswp, for which OpenBLAS wakes all its threads, and
+    where cores are busy a matrix of six numbers then waits for milliseconds.
     """
     n = matrix.shape[1]
     if n == 0:
         return np.empty((matrix.shape[0], 0)), np.empty(0), np.empty((0, 0))
-    values, left, right, work, _, info = dgejsv(matrix, **_ROW_SCALED_JACOBI)
+    order = np.argsort(-np.abs(matrix).max(axis=1), kind="stable")
+    values, turned, right, work, _, info = dgejsv(matrix[order], **_COLUMN_SCALED_JACOBI)
     _refuse_failure("gejsv", info)
-    return left[:, :n], values * (work[0] / work[1]), right
+    left = np.empty((len(matrix), n))
+    left[order] = turned[:, :n]
+    return left, values * (work[0] / work[1]), right
 
 
 def qr_full(matrix: Matrix) -> Matrix:
