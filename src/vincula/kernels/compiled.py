@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 PathName = Literal["auto", "lanes", "reference"]
 """How a batch is computed: in lanes where that is certain, in lanes or not at all, or one by one."""
+
+_PATHS: Final = get_args(PathName)
 
 Values = ArrayLike | Mapping[str, Any] | None
 
@@ -201,7 +203,7 @@ class CompiledMechanism:
             raise ModelError(
                 f"quantities are {quantities!r}: give a list of names, for example [{quantities!r}]"
             )
-        names = tuple(quantities)
+        names = quantities if type(quantities) is tuple else tuple(quantities)
         found = self._plans.get(names)
         if found is None:
             found = plan_for(self.mechanism, self._quantities, names, self.weights)
@@ -245,7 +247,7 @@ def _restored(mechanism: Mechanism, weights: Weights | None, build: Builder | No
 
 
 def _refuse_unknown(path: str, threads: int | None) -> None:
-    if path not in get_args(PathName):
-        raise ModelError(f"path is {path!r}: choose {listing(get_args(PathName))}")
+    if path not in _PATHS:
+        raise ModelError(f"path is {path!r}: choose {listing(_PATHS)}")
     if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
         raise ModelError(f"threads is {threads!r}: give a whole number of at least 1, or None for one a core")

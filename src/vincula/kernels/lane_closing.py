@@ -28,6 +28,8 @@ from vincula.mechanism.mechanism import Mechanism
 if TYPE_CHECKING:
     from vincula.kernels.lanes.closing import ClosedLanes, LaneClosing
 
+_Room = tuple[Matrix, Matrix, NDArray[np.int32], Vector, NDArray[np.uint8]]
+
 OPEN: Final = 1e-6
 """A gap that stays above this, times the characteristic length, does not close."""
 
@@ -160,7 +162,7 @@ def _closed(
 class SingleClosing:
     """One closing from home at a time: a call costs little more than its kernel.
 
-    It keeps nothing between calls, so several threads may use it.
+    Several threads may use it: a call takes memory that no other uses, or makes some.
 
     Args:
         closing: The closing in lanes; home must be closed.
@@ -169,10 +171,18 @@ class SingleClosing:
     def __init__(self, closing: LaneClosing) -> None:
         from vincula.kernels.lanes.closing_entries import closing_entry
 
-        self._arrays, self._run = closing.arrays, closing_entry(1)
-        self._start = np.array(closing.mechanism.home.flat, ndmin=2)
-        self._given = np.array(closing.at_home, ndmin=2)
-        self._first, self._count = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
+        self._run = closing_entry(1)
+        a = closing.arrays
+        one, none = np.ones(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
+        self._before = (
+            np.array(closing.mechanism.home.flat, ndmin=2),
+            np.array(closing.at_home, ndmin=2),
+            none,
+            one,
+        )
+        self._behind = a.code, a.plan, a.constants, a.value_scale, a.input_scale, 0, 1
+        self._shape = self._before[1].shape[1:]
+        self._rooms: list[_Room] = []
 
     def closed(self, inputs: Vector) -> tuple[Vector, int] | None:
         """The closed configuration and the Jacobians evaluated; None where lanes do not close it.
@@ -180,12 +190,18 @@ class SingleClosing:
         Args:
             inputs: Motor values, or one pose.
         """
-        if inputs.shape != self._given.shape[1:]:
+        if inputs.shape != self._shape:
             return None
-        values = np.empty_like(self._start)
-        steps, gaps, closed = np.zeros(1, dtype=np.int32), np.zeros(1), np.zeros(1, dtype=np.uint8)
-        a = self._arrays
-        self._run(self._start, self._given, self._first, self._count, np.array(inputs, np.float64, ndmin=2),
-                  a.code, a.plan, a.constants, a.value_scale, a.input_scale, 0, 1, values, steps, gaps,
-                  closed)  # fmt: skip
-        return (values[0], int(steps[0])) if closed[0] == 1 else None
+        room = self._rooms.pop() if self._rooms else self._room()
+        given, values, steps, gaps, closed = room
+        given[0] = inputs
+        self._run(*self._before, given, *self._behind, values, steps, gaps, closed)
+        found = (values[0].copy(), int(steps[0])) if closed[0] == 1 else None
+        self._rooms.append(room)
+        return found
+
+    def _room(self) -> _Room:
+        """Memory for one call: what is given, values, steps, gaps, whether it closed."""
+        start, given = self._before[:2]
+        return (np.empty_like(given), np.empty_like(start), np.zeros(1, dtype=np.int32), np.zeros(1),
+                np.zeros(1, dtype=np.uint8))  # fmt: skip

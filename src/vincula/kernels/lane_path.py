@@ -1,4 +1,4 @@
-"""A batch in lanes: block after block on all threads, and what only the reference path can decide.
+"""A batch in lanes: chunk after chunk on all threads, and what only the reference path can decide.
 
 A lane counts when every rank is certainly the one that the mechanism has in general; all others, the
 singular and the doubtful ones among them, are handed back.
@@ -6,9 +6,10 @@ singular and the doubtful ones among them, are handed back.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final, get_args
 
@@ -19,22 +20,30 @@ from vincula.analysis.ellipsoid import Kind
 from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quantity
 from vincula.arrays import Matrix
 from vincula.errors import MissingExtraError, VinculaError
-from vincula.kernels.lane_quantities import Listing, Writer, writer_of
+from vincula.kernels.lane_quantities import Listing, Writer, Written, written
+from vincula.kernels.lanes.outputs import CONSTANT, OPENED
+from vincula.kernels.lanes.targets import Tables, address
 from vincula.kernels.lanes.threads import pool
+from vincula.kernels.memory import aligned, doubles
 from vincula.kernels.plans import model_without_numbers
 from vincula.kernels.quantities import Quantity
 from vincula.kernels.reference_path import Arrays
 from vincula.kernels.samples import sample_configurations
 from vincula.mechanism.mechanism import Mechanism
-from vincula.mechanism.residuals import CLOSED
 from vincula.weights import Quantity as Weighed
 from vincula.weights import Weights
 
 if TYPE_CHECKING:
-    from vincula.kernels.lanes.program import LaneProgram, RawLanes
+    from vincula.kernels.lanes.program import LaneProgram
 
+CHUNK: Final = 4096
+"""Most lanes that a thread computes at a time: threads take chunks as they get ready."""
+LEAST: Final = 512
+"""Fewest lanes that are worth a thread's while; chunks are multiples of it."""
 BLOCK: Final = 1024
-"""Lanes computed and written at a time: what comes out of the kernel stays in the cache."""
+"""The same where quantities are computed from others: what a kernel gives stays in the cache."""
+PAST_CACHES: Final = 1 << 22
+"""Bytes of results from which they are written past the caches: they would not stay there."""
 
 SMALL_GAP: Final = 1e-5
 """Gaps up to this, in units of the characteristic length, are the same in lanes to about 1e-10."""
@@ -80,20 +89,18 @@ class LanePath:
 
     def writers(self, quantities: Iterable[Quantity]) -> LaneWriters | str:
         """How the quantities are written; or why only the reference path gives them."""
-        found: list[tuple[str, Writer]] = []
-        want = 0
+        found: list[tuple[str, Written]] = []
         for quantity in quantities:
-            if quantity.name in ("configuration", "closure.residual", "reference.pose"):
+            if quantity.name in ("status", "configuration", "reference.pose"):
                 continue
             listing = None if quantity.kind is None else self._listing(quantity.kind)
             if isinstance(listing, str):
                 return f"{quantity.name}: {listing}"
-            how = writer_of(quantity, self.program.counts, self.program.twelve, listing)
+            how = written(quantity, self.program.counts, self.program.twelve, listing)
             if isinstance(how, str):
                 return how
-            found.append((quantity.name, how[0]))
-            want |= how[1]
-        return LaneWriters(self, tuple(found), want)
+            found.append((quantity.name, how))
+        return LaneWriters(self, tuple(found))
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,13 +109,81 @@ class LaneWriters:
 
     Attributes:
         path: The mechanism in lanes.
-        writers: One a quantity, by name.
-        want: Directions that the kernel must give.
+        writers: How every quantity is written, by name.
     """
 
     path: LanePath
-    writers: tuple[tuple[str, Writer], ...]
-    want: int
+    writers: tuple[tuple[str, Written], ...]
+
+    @cached_property
+    def want(self) -> int:
+        """What the kernel must compute."""
+        want = 0
+        for _, how in self.writers:
+            want |= how.want
+        return want
+
+    @cached_property
+    def same(self) -> tuple[tuple[str, Any], ...]:
+        """Rows that are the same in all lanes, by quantity."""
+        return tuple((name, how.same) for name, how in self.writers if how.same is not None)
+
+    @cached_property
+    def derived(self) -> tuple[tuple[str, Writer], ...]:
+        """What is computed from other results, by quantity."""
+        return tuple((name, how.writer) for name, how in self.writers if how.writer is not None)
+
+    @cached_property
+    def widest(self) -> float:
+        """Lanes measure small gaps: for angles they take the sine.  A large one is measured one by one."""
+        return SMALL_GAP if any(name == "closure.residual" for name, _ in self.writers) else np.inf
+
+    def parts(self, arrays: Mapping[str, NDArray[np.float64]], varying: bool = False) -> list[int]:
+        """The table by which a kernel writes rows of the arrays.
+
+        Args:
+            arrays: One array a quantity.
+            varying: Whether to leave out what is the same in all rows.
+        """
+        found: list[int] = []
+        for name, how in self.writers:
+            for piece in how.pieces:
+                if not (varying and piece.section in CONSTANT):
+                    found += self.path.program.part(
+                        piece.section, arrays[name], piece.column, piece.start, piece.count
+                    )
+        return found
+
+    @cached_property
+    def doubles(self) -> int:
+        """Doubles that a kernel writes for one configuration."""
+        return sum(piece.count for _, how in self.writers for piece in how.pieces)
+
+    def staged(self, arrays: Arrays, lanes: int) -> Tables:
+        """Tables by which a kernel writes rows past the caches, through small arrays of so many rows.
+
+        What is the same in all rows is in these arrays already.
+
+        Args:
+            arrays: One array a quantity, each beginning at a line of the cache.
+            lanes: Number of rows.
+        """
+        named = [name for name, how in self.writers if how.pieces]
+        sizes = [math.prod(arrays[name].shape[1:]) for name in named]
+        whole = aligned(lanes * sum(sizes))
+        small: dict[str, NDArray[np.float64]] = {}
+        copies: list[int] = []
+        at = 0
+        for name, size in zip(named, sizes, strict=True):
+            small[name] = whole[at : at + lanes * size].reshape(lanes, size)
+            at += lanes * size
+            copies += [address(small[name]), address(arrays[name]), size]
+        for name, how in self.writers:
+            for piece in how.pieces:
+                if piece.section in CONSTANT:
+                    small[name][:, piece.column : piece.column + piece.count] = CONSTANT[piece.section]
+        parts = np.array(self.parts(small, varying=True), dtype=np.int64)
+        return Tables(parts, np.array(copies, dtype=np.int64), whole)
 
     def evaluate(
         self, values: Matrix, constants: Matrix | None, arrays: Arrays, threads: int
@@ -124,40 +199,49 @@ class LaneWriters:
         Returns:
             Lanes that must go to the reference path, and lanes whose loops are certainly open.
         """
-        count = len(values)
-        unknown = np.empty(count, dtype=bool)
-        opened = np.empty(count, dtype=bool)
-        # Lanes measure small gaps: for angles they take the sine.  A large one is measured one by one.
-        widest = SMALL_GAP if "closure.residual" in arrays else np.inf
+        count, status = len(values), arrays["status"]
+        rows = np.require(values, dtype=np.float64, requirements=["C", "W"])
+        numbers = None if constants is None else np.require(constants, np.float64, ["C", "W"])
+        share = -(-count // (4 * threads * LEAST)) * LEAST
+        size = min(BLOCK if self.derived else CHUNK, max(share, LEAST))
 
-        def block(first: int) -> None:
-            part = slice(first, min(first + BLOCK, count))
-            raw = self.path.program.run(
-                values[part], None if constants is None else constants[part], want=self.want, threads=1
-            )
-            self._write(raw, arrays, part, self._lengths(constants, part))
-            opened[part] = ~raw.certain & (raw.residual > 2.0 * CLOSED) & (raw.residual < widest)
-            unknown[part] = ~(raw.certain | opened[part])
+        def chunk(first: int) -> None:
+            self._chunk(rows, numbers, arrays, first, min(first + size, count))
 
-        starts = range(0, count, BLOCK)
+        starts = range(0, count, size)
         if threads > 1 and len(starts) > 1:
-            for _ in pool(threads).map(block, starts):
+            for _ in pool(threads).map(chunk, starts):
                 pass
         else:
             for first in starts:
-                block(first)
-        return np.flatnonzero(unknown), np.flatnonzero(opened)
-
-    def _lengths(self, constants: Matrix | None, part: slice) -> Any:
-        """Characteristic lengths of lanes: the first constant is one over it."""
-        return 1.0 / (self.path.program.constants[0] if constants is None else constants[part, 0])
-
-    def _write(self, raw: RawLanes, arrays: Arrays, part: slice, lengths: Any) -> None:
-        with np.errstate(all="ignore"):  # lanes that are not certain hold anything
-            for name, writer in self.writers:
-                writer(raw, arrays[name][part])
+                chunk(first)
         if "closure.residual" in arrays:
-            arrays["closure.residual"][part] = raw.residual * lengths
+            # The first constant is one over the characteristic length.
+            scales = self.path.program.constants[0] if constants is None else constants[:, 0]
+            arrays["closure.residual"] *= 1.0 / scales
+        found = np.flatnonzero(status)
+        opened = status[found] == OPENED
+        return found[~opened], found[opened]
+
+    def _chunk(self, values: Matrix, constants: Matrix | None, arrays: Arrays, first: int, last: int) -> None:
+        """Lanes first ... last - 1."""
+        program, status = self.path.program, arrays["status"]
+        for name, row in self.same:
+            arrays[name][first:last] = row
+        if self.derived:
+            raw = np.empty((last - first, program.outputs(self.want)))
+            parts = self.parts(arrays) + program.raw_parts(self.want, raw, first)
+            tables = Tables(np.array(parts, dtype=np.int64))
+        elif 8 * self.doubles * len(values) >= PAST_CACHES:
+            tables = self.staged(arrays, program.width(len(values)))
+        else:
+            tables = Tables(np.array(self.parts(arrays), dtype=np.int64))
+        program.deliver(values, constants, self.want, self.widest, tables, status, span=(first, last))
+        if self.derived:
+            given = program.named(raw, status[first:last], self.want)
+            with np.errstate(all="ignore"):  # lanes that are not certain hold anything
+                for name, writer in self.derived:
+                    writer(given, arrays[name][first:last])
 
 
 def lane_path(mechanism: Mechanism, weights: Weights | None, *, general: bool) -> LanePath | str:
@@ -201,4 +285,7 @@ def refuse_without_numba() -> None:
 
 def empty_arrays(quantities: Iterable[Quantity], lanes: int) -> dict[str, NDArray[Any]]:
     """Arrays that lanes write in full."""
-    return {q.name: np.empty((lanes, *q.shape), dtype=q.dtype) for q in quantities}
+    return {
+        q.name: doubles((lanes, *q.shape)) if q.dtype is np.float64 else np.empty((lanes, *q.shape), q.dtype)
+        for q in quantities
+    }

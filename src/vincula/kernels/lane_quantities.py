@@ -1,7 +1,8 @@
-"""From what lanes give to the quantities of a batch: every quantity as a writer of blocks.
+"""From what lanes give to the quantities of a batch: how every quantity is written.
 
 Lanes give the finite efficiencies with their pairs of directions; how many infinite and zero ones there
-are is the same in all lanes that are certain.
+are is the same in all lanes that are certain.  So most numbers go straight from a kernel to their place in
+the result, and integers are the same in all lanes; a few quantities are computed from others, block by block.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from vincula.analysis.ellipsoid import Kind
 from vincula.arrays import Vector
+from vincula.kernels.lanes import outputs as o
 from vincula.kernels.quantities import CLASS_CODES, INDICES, NO_CLASS, SUMMARY, Quantity
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.numerics.subspaces import settled
@@ -25,14 +27,40 @@ if TYPE_CHECKING:
 Block = NDArray[Any]
 Writer = Callable[["RawLanes", Block], None]
 """Writes one quantity of a block of lanes at its place."""
-MOTIONS: Final = 1
-"""Directions of the kinematic ellipsoid are needed."""
-EFFORTS: Final = 2
-"""Directions of the force ellipsoids are needed."""
-REST: Final = 4
-"""Directions of infinite and zero kinematic efficiencies are needed."""
-COUNTS: Final = 8
-"""All twelve counts must be certain."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Consecutive numbers that a kernel writes into every row of a quantity.
+
+    Attributes:
+        section: Where they come from, see `lanes.outputs`.
+        start: First number of the section.
+        count: How many.
+        column: Where in the row they begin.
+    """
+
+    section: str
+    start: int
+    count: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Written:
+    """How a quantity is written.
+
+    Attributes:
+        want: What the kernel must compute for it, see `lanes.outputs`.
+        pieces: What the kernel writes.
+        same: A row that is the same in all lanes.
+        writer: What computes the rest from other results of a block, afterwards.
+    """
+
+    want: int = 0
+    pieces: tuple[Piece, ...] = ()
+    same: Any = None
+    writer: Writer | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +98,23 @@ class Listing:
     @property
     def want(self) -> int:
         """Which directions this ellipsoid needs."""
-        return MOTIONS if self.kind == "kinematic" else EFFORTS
+        return o.MOTIONS if self.kind == "kinematic" else o.EFFORTS
+
+    @property
+    def section(self) -> str:
+        """Where its finite efficiencies stand, largest first."""
+        return "efficiencies" if self.kind == "kinematic" else "reciprocals"
+
+    @property
+    def needed(self) -> int:
+        """What gives its finite efficiencies."""
+        return 0 if self.kind == "kinematic" else o.RECIPROCALS
+
+    def sides(self, part: str) -> str:
+        """Where directions of its finite efficiencies stand."""
+        if self.kind == "kinematic":
+            return "twists" if part == "task_directions" else "rates"
+        return "wrenches" if part == "task_directions" else "torques"
 
     def values(self, raw: RawLanes) -> NDArray[np.float64]:
         """Lanes x finite efficiencies, largest first."""
@@ -86,10 +130,10 @@ class Listing:
         return np.empty(0) if found is None else found
 
 
-def writer_of(
+def written(
     quantity: Quantity, counts: SummaryCounts, twelve: TwelveCounts | None, listing: Listing | None
-) -> tuple[Writer, int] | str:
-    """How lanes write a quantity and what that needs; or why only the reference path does.
+) -> Written | str:
+    """How lanes write a quantity; or why only the reference path does.
 
     Args:
         quantity: The quantity.
@@ -98,7 +142,7 @@ def writer_of(
         listing: What its ellipsoid lists; None where lanes do not know it.
     """
     if quantity.name == "counts" and twelve is not None:
-        return _constant(list(twelve.as_dict().values())), COUNTS
+        return Written(o.COUNTS, same=list(twelve.as_dict().values()))
     if quantity.kind is None:
         return _of_model(quantity, counts)
     if listing is None:
@@ -107,97 +151,67 @@ def writer_of(
         return _of_index(quantity, listing)
     if quantity.part in ("task_directions", "motor_directions"):
         return _of_directions(quantity, listing)
-    plain: dict[str, Callable[[Listing], Writer]] = {
-        "efficiencies": _efficiencies,
-        "classes": _classes,
-        "smallest": _smallest,
-        "largest": _largest,
-        "bounds": _bounds,
-    }
-    return plain[quantity.part](listing), 0
+    if quantity.part == "classes":
+        codes = [CLASS_CODES["infinite"]] * listing.infinite + [CLASS_CODES["finite"]] * listing.finite
+        codes += [CLASS_CODES["zero"]] * listing.zero
+        return Written(same=codes + [NO_CLASS] * (quantity.shape[0] - len(codes)))
+    if quantity.part in ("smallest", "largest"):
+        if not listing.finite:
+            return Written(pieces=(Piece("nothing", 0, 1, 0),))
+        place = 0 if quantity.part == "largest" else listing.finite - 1
+        return Written(listing.needed, (Piece(listing.section, place, 1, 0),))
+    if quantity.part == "bounds":
+        return Written(o.BOUNDS, _row(listing, "bounds", "zero", quantity.shape[0]))
+    return Written(listing.needed, _row(listing, listing.section, "infinity", quantity.shape[0]))
 
 
-def _of_model(quantity: Quantity, counts: SummaryCounts) -> tuple[Writer, int] | str:
-    if quantity.name == "status":
-        return _constant(0), 0
+def _row(listing: Listing, section: str, of_infinite: str, width: int) -> tuple[Piece, ...]:
+    """Entries of an ellipsoid: infinite, finite, zero, none."""
+    last = listing.last + listing.zero
+    pieces = (
+        Piece(of_infinite, 0, listing.infinite, 0),
+        Piece(section, 0, listing.finite, listing.infinite),
+        Piece("zero", 0, listing.zero, listing.last),
+        Piece("nothing", 0, width - last, last),
+    )
+    return tuple(piece for piece in pieces if piece.count)
+
+
+def _of_model(quantity: Quantity, counts: SummaryCounts) -> Written | str:
     if quantity.name == "summary":
-        return _constant(list(counts.as_dict().values())), 0
+        return Written(same=list(counts.as_dict().values()))
     if quantity.name in SUMMARY:
-        return _constant(getattr(counts, quantity.name)), 0
+        return Written(same=getattr(counts, quantity.name))
     if quantity.name == "closure.iterations":
-        return _constant(-1), 0
+        return Written(same=-1)
+    if quantity.name == "closure.residual":
+        return Written(pieces=(Piece("residual", 0, 1, 0),))
     return f"{quantity.name} is not computed in lanes"
 
 
-def _constant(value: Any) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[...] = value
-
-    return write
-
-
-def _efficiencies(listing: Listing) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[:, : listing.infinite] = np.inf
-        out[:, listing.infinite : listing.last] = listing.values(raw)
-        out[:, listing.last : listing.last + listing.zero] = 0.0
-        out[:, listing.last + listing.zero :] = np.nan
-
-    return write
-
-
-def _bounds(listing: Listing) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[:, : listing.infinite] = 0.0
-        out[:, listing.infinite : listing.last] = raw.bounds
-        out[:, listing.last : listing.last + listing.zero] = 0.0
-        out[:, listing.last + listing.zero :] = np.nan
-
-    return write
-
-
-def _classes(listing: Listing) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[:, : listing.infinite] = CLASS_CODES["infinite"]
-        out[:, listing.infinite : listing.last] = CLASS_CODES["finite"]
-        out[:, listing.last : listing.last + listing.zero] = CLASS_CODES["zero"]
-        out[:, listing.last + listing.zero :] = NO_CLASS
-
-    return write
-
-
-def _smallest(listing: Listing) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[:] = listing.values(raw)[:, -1] if listing.finite else np.nan
-
-    return write
-
-
-def _largest(listing: Listing) -> Writer:
-    def write(raw: RawLanes, out: Block) -> None:
-        out[:] = listing.values(raw)[:, 0] if listing.finite else np.nan
-
-    return write
-
-
-def _of_directions(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
+def _of_directions(quantity: Quantity, listing: Listing) -> Written | str:
     side = quantity.part
     rest = listing.infinite if side == "task_directions" else listing.zero
     if rest and listing.kind != "kinematic":
         return f"{quantity.name}: lanes give the directions of finite force efficiencies only"
+    entries, size = quantity.shape
+    pieces = (
+        Piece("nothing", 0, listing.infinite * size, 0),
+        Piece(listing.sides(side), 0, listing.finite * size, listing.infinite * size),
+        Piece("nothing", 0, (entries - listing.last) * size, listing.last * size),
+    )
+    kept = tuple(piece for piece in pieces if piece.count)
+    if not rest:
+        return Written(listing.want, kept)
     # Infinite ones come before the finite ones and have no motor side, zeros behind them and no task side.
     of_rest = slice(0, rest) if side == "task_directions" else slice(listing.last, listing.last + rest)
 
     def write(raw: RawLanes, out: Block) -> None:
-        out[:, : listing.infinite] = np.nan
-        out[:, listing.infinite : listing.last] = listing.directions(raw, side)
-        out[:, listing.last :] = np.nan
-        if rest:
-            bases = raw.free if side == "task_directions" else raw.idle
-            roots = listing.roots if side == "task_directions" else listing.motor_roots
-            out[:, of_rest] = _rest_directions(raw, bases, roots)
+        bases = raw.free if side == "task_directions" else raw.idle
+        roots = listing.roots if side == "task_directions" else listing.motor_roots
+        out[:, of_rest] = _rest_directions(raw, bases, roots)
 
-    return write, listing.want | (REST if rest else 0)
+    return Written(listing.want | o.REST, kept, writer=write)
 
 
 def _rest_directions(raw: RawLanes, bases: NDArray[np.float64] | None, roots: Vector) -> NDArray[np.float64]:
@@ -213,7 +227,7 @@ def _rest_directions(raw: RawLanes, bases: NDArray[np.float64] | None, roots: Ve
     return np.asarray(found * signs + 0.0)
 
 
-def _of_index(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
+def _of_index(quantity: Quantity, listing: Listing) -> Written | str:
     if listing.infinite:
         return f"{quantity.name}: lanes take indices of bounded ellipsoids only"
     s = 2 if len(listing.roots) == 3 else 3
@@ -233,7 +247,7 @@ def _of_index(quantity: Quantity, listing: Listing) -> tuple[Writer, int] | str:
         found[certain] = singular_values(axes[certain])
         out[:] = index(_padded(found, len(roots)))
 
-    return (of_all, 0) if quantity.on == "all" else (of_part, listing.want)
+    return Written(0, writer=of_all) if quantity.on == "all" else Written(listing.want, writer=of_part)
 
 
 def _padded(axes: NDArray[np.float64], size: int) -> NDArray[np.float64]:

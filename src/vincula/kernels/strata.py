@@ -54,10 +54,8 @@ def evaluate_alike(
             done[:] = True
             for others in made.evaluate(values[left], constants[left], found, threads):
                 done[others] = False
-        for name, _ in made.writers if made is not None else ():
+        for name in ("status", *(name for name, _ in made.writers)) if made is not None else ():
             arrays[name][left[done]] = found[name][done]
-        if "closure.residual" in arrays:
-            arrays["closure.residual"][left[done]] = found["closure.residual"][done]
         if not done[0]:
             alone.append(left[0])
             done[0] = True

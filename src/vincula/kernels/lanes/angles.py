@@ -28,17 +28,24 @@ from vincula.kernels.lanes.vector import (
 )
 
 SWEEPS = 16
-"""At most so many rounds over all pairs; six or seven are usual."""
+"""At most so many rounds over all pairs; five or six are usual."""
 ORTHOGONAL = 1e-29
 """Squared cosine below which two columns count as orthogonal."""
+SMALL = 1e-17
+"""Squared sine, and squared cosine of two columns, below which a rotation disturbs nothing any more.
+
+A round of such rotations leaves every cosine below the product of the two times the number of columns, so
+it is the last one: nothing is left to look at."""
 NOTHING = 1e-290
 
 
 @kernel
 def rotate_all(w: Slots, code: Code, base: int, z: Lane) -> Lane:
-    """Rotate all pairs until none changes; 1 in lanes where that was reached, else 0.
+    """Rotate all pairs until rotations are small; 1 in lanes where that was reached, else 0.
 
-    A lane in which nothing changes any more is left as it is while others go on.
+    A lane that is done is left as it is while others go on.  Pairs come with growing sums of their places:
+    for every column that is the order row by row, but neighbours have no column in common, so the processor
+    works at several of them at once.
     """
     k, motors, size = code[t.FREEDOM], code[t.MOTORS], code[t.MOTORS] + code[t.TWIST]
     first, squares = base + code[t.MOTIONS], base + code[t.SQUARES]
@@ -48,8 +55,9 @@ def rotate_all(w: Slots, code: Code, base: int, z: Lane) -> Lane:
         measure(w, first, squares, k, motors, size, z)
         count = splat(float(sweep), z)
         done = True
-        for p in range(k - 1):
-            for q in range(p + 1, k):
+        for total in range(1, 2 * k - 2):
+            for p in range(max(0, total - k + 1), (total + 1) // 2):
+                q = total - p
                 a, b = first + p * size, first + q * size
                 if _rotate(w, a, b, squares + 2 * p, squares + 2 * q, motors, size, changed, count, z):
                     done = False
@@ -79,7 +87,7 @@ def measure(w: Slots, first: int, squares: int, k: int, motors: int, size: int, 
 def _rotate(
     w: Slots, a: int, b: int, of_a: int, of_b: int, motors: int, size: int, changed: int, count: Lane, z: Lane
 ) -> bool:
-    """One rotation of columns a and b; whether any lane needed it."""
+    """One rotation of columns a and b; whether it was not small in any lane."""
     inner_q, inner_u = z, z
     for i in range(motors):
         inner_q = fma(load(w, a + i, z), load(w, b + i, z), inner_q)
@@ -92,10 +100,13 @@ def _rotate(
     gap = select(by_twist, b_u - a_u, a_q - b_q)
     product = select(by_twist, a_u * b_u, a_q * b_q)
     skew = more(inner * inner, splat(ORTHOGONAL, z) * product)
-    active = either(skew, more(gap, z))
-    if not some_lane(active):
+    before = load(w, changed, z)
+    # A lane goes on while the round before, or this one, changed much in it.
+    last = before + splat(1.5, z)
+    going, halted = more(last, count), at_most(last, count)
+    skew, exchanged = both(going, skew), both(going, more(gap, z))
+    if not some_lane(either(skew, exchanged)):
         return False
-    store(w, changed, select(active, count, load(w, changed, z)))
     twice = inner + inner
     radius = fma(gap, gap, twice * twice)
     inverse = rsqrt(radius)
@@ -104,10 +115,10 @@ def _rotate(
     square = fma(absolute(gap) * half, inverse, half)
     root = rsqrt(square)
     cosine = select(skew, square * root, splat(1.0, z))
-    sine = select(skew, half * twice * inverse * root, z)
+    sine = select(skew, inner * inverse * root, z)
     tangent = sine * root
     # The longer twist comes first: where b has it, the pair is exchanged as well.
-    stay = at_most(gap, z)
+    stay = either(at_most(gap, z), halted)
     c, s = select(stay, cosine, sine), select(stay, neg(sine), neg(cosine))
     for i in range(size):
         x, y = load(w, a + i, z), load(w, b + i, z)
@@ -117,4 +128,8 @@ def _rotate(
     store(w, of_b + 1, fnma(tangent, inner_u, select(stay, b_u, a_u)))
     store(w, of_a, fma(tangent, inner_q, select(stay, a_q, b_q)))
     store(w, of_b, fnma(tangent, inner_q, select(stay, b_q, a_q)))
-    return True
+    turned = either(more(sine * sine, splat(SMALL, z)), more(inner * inner, splat(SMALL, z) * product))
+    much = either(exchanged, both(skew, turned))
+    store(w, changed, select(much, count, before))
+    found: bool = some_lane(much)
+    return found

@@ -21,6 +21,7 @@ from vincula.kernels.closing import pose_from
 from vincula.kernels.lanes.closing_flat import ClosingArrays, closing_arrays
 from vincula.kernels.lanes.closing_forest import Given
 from vincula.kernels.lanes.threads import in_shares
+from vincula.kernels.memory import doubles
 from vincula.kernels.reference_path import pose_of_reference
 from vincula.mechanism.closed import ClosedConfiguration
 from vincula.mechanism.configuration import Configuration
@@ -160,10 +161,10 @@ class _Run:
     def __init__(self, closing: LaneClosing, inputs: Matrix, threads: int | None) -> None:
         self.closing, self.inputs, self.threads = closing, inputs, threads
         count = len(inputs)
-        self.values = np.zeros((count, len(closing.arrays.value_scale)))
-        self.steps = np.zeros(count, dtype=np.int32)
-        self.gaps = np.zeros(count)
-        self.closed = np.zeros(count, dtype=np.uint8)
+        self.values = doubles((count, len(closing.arrays.value_scale)))
+        self.steps = np.empty(count, dtype=np.int32)
+        self.gaps = doubles((count,))
+        self.closed = np.empty(count, dtype=np.uint8)
 
     def result(self) -> ClosedLanes:
         """What was found."""
@@ -226,7 +227,10 @@ class _Run:
 
     def _mend(self, heads: Indices, lengths: Indices, later: Indices) -> None:
         """Do stretches again that do not continue the one before."""
-        ends = np.array([self._last_closed(heads[k - 1], lengths[k - 1]) for k in later], dtype=np.int64)
+        ends = heads[later - 1] + lengths[later - 1] - 1
+        for lost in np.flatnonzero(self.closed[ends] == 0):
+            before = later[lost] - 1
+            ends[lost] = self._last_closed(heads[before], lengths[before])
         joins = self._joins(ends, heads[later])
         redone = -1
         for place, k in enumerate(later):

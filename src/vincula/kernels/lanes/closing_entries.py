@@ -16,6 +16,12 @@ from vincula.kernels.lanes.jit import Code, Slots, kernel
 from vincula.kernels.lanes.vector import load, store, zeros
 from vincula.kernels.lanes.workspace import aligned
 
+CLOSING = (
+    "closing_entries closing_gaps closing_newton closing_scalar_gaps closing_steps closing_tables "
+    "closing_walk frames jit tables trigonometry vector workspace"
+)
+"""Sources that the entry of this file is made of."""
+
 _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
@@ -28,7 +34,7 @@ def closing_entry(width: int) -> Any:
     scales of values and inputs, first and last group of `width` stretches; it writes values, steps, squared
     gaps, and whether a lane arrived (1), jumped (2) or neither (0).
     """
-    stamp = fingerprint()
+    stamp = fingerprint(CLOSING)
 
     @numba.njit(**_OPTIONS)
     def run(

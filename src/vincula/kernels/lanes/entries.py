@@ -15,9 +15,11 @@ from typing import Any
 import llvmlite
 import numba
 
+from vincula.kernels.lanes import outputs as o
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.angles import measure, rotate_all
 from vincula.kernels.lanes.certificates import certain_ranks, certify_twists
+from vincula.kernels.lanes.delivery import COPY, PART, deliver, fence, pass_on
 from vincula.kernels.lanes.dense import dense_matrix
 from vincula.kernels.lanes.elimination import eliminate
 from vincula.kernels.lanes.frames import borrowed, place_all
@@ -25,7 +27,7 @@ from vincula.kernels.lanes.gaps import note_gaps
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
 from vincula.kernels.lanes.ranks import certain_counts
 from vincula.kernels.lanes.relation import relate
-from vincula.kernels.lanes.results import finish, write
+from vincula.kernels.lanes.results import finish
 from vincula.kernels.lanes.rows import slopes
 from vincula.kernels.lanes.vector import first_of, zeros
 from vincula.kernels.lanes.workspace import aligned, enter
@@ -34,8 +36,8 @@ _OPTIONS = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
 SPECTRA = (
-    "angles certificates chains dense elimination entries frames gaps jit ranks reflections relation results "
-    "rows tables trigonometry vector workspace"
+    "angles certificates chains delivery dense elimination entries frames gaps jit outputs ranks reflections "
+    "relation results rows tables trigonometry vector workspace"
 )
 """Sources that the entries of this file are made of."""
 
@@ -91,7 +93,7 @@ def dense_entry(width: int) -> Any:
 
 
 @kernel
-def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, z: Lane) -> None:
+def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, widest: float, z: Lane) -> None:
     """Everything for one block of configurations whose values are in the workspace."""
     place_all(w, code, constants, base, z)
     slopes(w, code, constants, base, z)
@@ -99,31 +101,49 @@ def spectra(w: Slots, code: Code, constants: Slots, base: int, want: int, z: Lan
     note_gaps(w, code, constants, base, z)
     certify_twists(w, code, base, z)
     certain = certain_ranks(w, code, constants, base, z)
-    if want & 8:
+    if want & o.COUNTS:
         certain = certain * certain_counts(w, code, constants, base, z)
     relate(w, code, constants, base, z)
     settled = rotate_all(w, code, base, z)
     size = code[t.MOTORS] + code[t.TWIST]
     measure(w, base + code[t.MOTIONS], base + code[t.SQUARES], code[t.FREEDOM], code[t.MOTORS], size, z)
-    finish(w, code, constants, base, certain, settled, want, z)
+    finish(w, code, constants, base, certain, settled, want, widest, z)
 
 
 @lru_cache(maxsize=4)
 def spectra_entry(width: int) -> Any:
-    """Spectra: (values, code, constants, base, want, first, last, out) for blocks first ... last - 1."""
+    """Spectra of blocks first ... last - 1 of `width` configurations each.
+
+    The function takes: values (N x values), tables, constants, first slot after constants that differ from
+    lane to lane, what is wanted, the widest gap that is measured well, first and last block; then where
+    results go: the two tables of `delivery`, and a status of every configuration.
+    """
     stamp = fingerprint(SPECTRA)
 
     @numba.njit(**_OPTIONS)
     def run(
-        values: Slots, tables: Code, numbers: Slots, base: int, want: int, first: int, last: int, out: Slots
-    ) -> str:
+        values: Slots, tables: Code, numbers: Slots, base: int, want: int, widest: float,
+        first: int, last: int, parts: Code, copies: Code, status: Any,
+    ) -> str:  # fmt: skip
         z = zeros(width)
-        room = aligned(base + (tables[t.TOTAL_WITH_COUNTS] if want & 8 else tables[t.TOTAL]), width)
-        w, code, constants = first_of(room), first_of(tables), borrowed(numbers)
+        room = aligned(base + (tables[t.TOTAL_WITH_COUNTS] if want & o.COUNTS else tables[t.TOTAL]), width)
+        w, code, constants, table = first_of(room), first_of(tables), borrowed(numbers), first_of(parts)
+        output, count = base + code[t.OUTPUT], len(parts) // PART
+        further, streams = first_of(copies), len(copies) // COPY
         for block in range(first, last):
             enter(w, code, constants, base, values, block, width, z)
-            spectra(w, code, constants, base, want, z)
-            write(w, base + code[t.OUTPUT], out.shape[1], out, block * width, width)
+            spectra(w, code, constants, base, want, widest, z)
+            row = block * width
+            lanes = min(width, len(values) - row)
+            if streams > 0:
+                deliver(w, output, table, count, 0, lanes, width, z)
+                pass_on(further, streams, row, lanes)
+            else:
+                deliver(w, output, table, count, row, lanes, width, z)
+            for lane in range(lanes):
+                status[row + lane] = int(w[(output + o.STATUS) * width + lane])
+        if streams > 0:
+            fence()
         room[0] = 0.0  # alive until here
         return stamp
 

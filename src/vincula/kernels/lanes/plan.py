@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.elimination_plan import Eliminator, Front, Samples, ordered
 from vincula.kernels.lanes.flatten import Flat, Unsupported
+from vincula.kernels.lanes.outputs import output_slots
 from vincula.kernels.lanes.relation_plan import LimbPlan, RelationPlan, plan_relation
 from vincula.kernels.lanes.structure import Structure
 from vincula.mechanism.layout import Layout
@@ -187,7 +188,7 @@ class _Writer:
             t.MOTIONS: relation.freedom * (code[t.MOTORS] + d),
             t.SQUARES: 2 * relation.freedom,
             t.NOTES: t.NOTE_COUNT,
-            t.OUTPUT: output_size(counts, code[t.MOTORS], d, 7),
+            t.OUTPUT: output_slots(counts, code[t.MOTORS], d),
         }
         for entry, count in sizes.items():
             code[entry] = self.slot(count)
@@ -236,11 +237,3 @@ def _index_in(front: Front, column: int, motors: int) -> int:
         return front.rank + [c for c in front.columns[front.pivots :] if c >= motors].index(column)
     kept = front.order[: front.rank]
     return kept.index(position) if position in kept else -1
-
-
-def output_size(counts: SummaryCounts, motors: int, twist: int, want: int) -> int:
-    """Number of results of one configuration: see `results.finish`."""
-    finite = counts.coordinated
-    directions = (want & 1) + (want >> 1 & 1)
-    size = 3 + 2 * finite + directions * finite * (motors + twist)
-    return size + (counts.indeterminacy * twist + counts.redundancy * motors if want & 4 else 0)

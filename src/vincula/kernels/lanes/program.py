@@ -9,9 +9,9 @@ reason, and `run` marks the configurations that the reference path must look at.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,11 +19,15 @@ from numpy.typing import NDArray
 
 from vincula.analysis.recipes import resolved_weights
 from vincula.arrays import Matrix, Vector
+from vincula.kernels.lanes import outputs as o
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.flatten import Flat, Unsupported, flatten
 from vincula.kernels.lanes.metrics import doubt_constants, metric_constants
-from vincula.kernels.lanes.plan import Plan, make_plan, output_size
-from vincula.kernels.lanes.threads import cores, pool
+from vincula.kernels.lanes.outputs import BOUNDS, COUNTS, EFFORTS, MOTIONS, REST, SHARED
+from vincula.kernels.lanes.plan import Plan, make_plan
+from vincula.kernels.lanes.raw_lanes import RawLanes, named, wanted
+from vincula.kernels.lanes.targets import NOTHING, Tables, address
+from vincula.kernels.lanes.threads import in_shares
 from vincula.model import LinearModel
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.weights import Weights
@@ -31,49 +35,10 @@ from vincula.weights import Weights
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
 
-MOTIONS = 1
-"""Wanted: directions of the kinematic ellipsoid."""
-EFFORTS = 2
-"""Wanted: directions of the force ellipsoids."""
-COUNTS = 8
-"""Wanted: lanes that are certain of all twelve counts."""
-REST = 4
-"""Wanted: twists that no motor drives, rates that leave the member at rest."""
+__all__ = ["BOUNDS", "COUNTS", "EFFORTS", "MOTIONS", "REST", "LaneProgram", "RawLanes", "dense_matrices"]
+
 SMALLEST_SHARE = 32
 """A thread gets at least so many blocks, so that starting it pays."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RawLanes:
-    """What lanes give, one row a configuration.
-
-    Attributes:
-        certain: Whether everything else in the row holds, and the counts of the program; other rows are for
-            the reference path.
-        residual: Largest gap of a loop in units of the characteristic length.
-        angle: Uncertainty of the motions as an angle [rad].
-        efficiencies: N x f finite kinematic efficiencies, largest first.  The finite efficiencies of the
-            force ellipsoids under the reciprocal metrics are their reciprocals in the opposite order.
-        bounds: N x f bounds on the errors of the efficiencies.
-        twists: N x f x d unit directions paired with the efficiencies; None unless wanted.
-        rates: N x f x n_a their motor side.
-        wrenches: N x f x d unit directions of the finite force efficiencies, largest first; or None.
-        torques: N x f x n_a their motor side.
-        free: N x free x d orthonormal twists, in lengths of the metric; None unless wanted.
-        idle: N x idle x n_a orthonormal rates, in lengths of the metric.
-    """
-
-    certain: NDArray[np.bool_]
-    residual: Vector
-    angle: Vector
-    efficiencies: Matrix
-    bounds: Matrix
-    twists: NDArray[np.float64] | None
-    rates: NDArray[np.float64] | None
-    wrenches: NDArray[np.float64] | None
-    torques: NDArray[np.float64] | None
-    free: NDArray[np.float64] | None
-    idle: NDArray[np.float64] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,10 +133,114 @@ class LaneProgram:
             want: `MOTIONS`, `EFFORTS`, `REST` and `COUNTS`, added up.
             threads: Threads to use; by default one a core.
         """
-        out = np.empty((len(values), self.outputs(want)))
-        if len(values):
-            self._run(values, constants, want, threads, out)
-        return self.named(out, want)
+        lanes, want = len(values), want | BOUNDS
+        raw, status = np.empty((lanes, self.outputs(want))), np.empty(lanes, dtype=np.uint8)
+        tables = Tables(np.array(self.raw_parts(want, raw), dtype=np.int64))
+        self.deliver(_rows(values), constants, want, np.inf, tables, status, threads)
+        return self.named(raw, status, want)
+
+    def deliver(
+        self,
+        values: Matrix,
+        constants: Matrix | None,
+        want: int,
+        widest: float,
+        tables: Tables,
+        status: NDArray[np.uint8],
+        threads: int | None = 1,
+        span: tuple[int, int] | None = None,
+    ) -> None:
+        """Spectra of many configurations, written where a table says.
+
+        Args:
+            values: N x values, contiguous and writable.
+            constants: As in `run`.
+            want: What is wanted; see `outputs`.
+            widest: Gaps up to this, in units of the length, are measured well enough to call a loop open.
+            tables: What goes where; with copies in them for one thread only.
+            status: N: 0 certain, `OPENED`, `UNKNOWN`.
+            threads: Threads to use; None for one a core.
+            span: First and last configuration, by default all: multiples of `BLOCK_LANES`, or the end.
+        """
+        from vincula.kernels.lanes.entries import spectra_entry
+
+        first, last = span or (0, len(values))
+        if last <= first:
+            return
+        width = self.width(len(values))
+        run = spectra_entry(width)
+        base, given = self._geometry(constants)
+        want |= self.shared
+
+        def blocks(one: int, two: int) -> None:
+            run(values, self.code, given, base, want, widest, start + one, start + two, *where)
+
+        start, where = first // width, (tables.parts, tables.copies, status)
+        in_shares(blocks, -(-last // width) - start, threads, SMALLEST_SHARE)
+
+    def width(self, lanes: int) -> int:
+        """How many lanes run side by side."""
+        from vincula.kernels.lanes.entries import lanes_of_this_machine
+
+        return 1 if lanes == 1 else lanes_of_this_machine()
+
+    def one_lane(
+        self, want: int, widest: float
+    ) -> Callable[[Matrix, NDArray[np.int64], NDArray[np.uint8]], None]:
+        """`deliver` for one configuration, with everything looked up: takes values, table and status."""
+        from vincula.kernels.lanes.entries import spectra_entry
+
+        run, code, constants, flags = spectra_entry(1), self.code, self.constants, want | self.shared
+
+        def one(values: Matrix, table: NDArray[np.int64], status: NDArray[np.uint8]) -> None:
+            run(values, code, constants, 0, flags, widest, 0, 1, table, NOTHING, status)
+
+        return one
+
+    @cached_property
+    def sections(self) -> dict[str, o.Section]:
+        """Where results stand, by name."""
+        return o.sections(self.counts, int(self.code[t.MOTORS]), int(self.code[t.TWIST]))
+
+    def part(
+        self, name: str, out: NDArray[np.float64], column: int, start: int = 0, count: int | None = None
+    ) -> list[int]:
+        """A part of a table: numbers of a section to a column of an array and those after it.
+
+        Args:
+            name: The section; `infinity`, `zero` and `nothing` are repeated.
+            out: N x ... array, contiguous.
+            column: First of the numbers of a row.
+            start: First number of the section.
+            count: How many; all that are left by default.
+        """
+        section = self.sections[name]
+        stride = out.strides[0] // 8
+        step = 0 if name in o.CONSTANT else 1
+        length = section.size - start if count is None else count
+        return [section.first + start, step, length, address(out) + 8 * column, stride]
+
+    def raw_parts(self, want: int, raw: Matrix, first: int = 0) -> list[int]:
+        """The table that writes everything wanted to the rows of one array, N x `outputs(want)`.
+
+        Args:
+            want: What is wanted.
+            raw: The array.
+            first: The configuration that its first row is for.
+        """
+        found: list[int] = []
+        column = -first * raw.shape[1]
+        for name in wanted(want):
+            found += self.part(name, raw, column)
+            column += self.sections[name].size
+        return found
+
+    @cached_property
+    def shared(self) -> int:
+        """`SHARED` where results of motions and efforts are weighed alike."""
+        size = int(self.code[t.MOTORS] + self.code[t.TWIST])
+        of_results = self.constants[int(self.code[t.METRIC]) + size :][: 2 * size]
+        return SHARED if np.array_equal(of_results[:size], of_results[size:]) else 0
 
     @property
     def roots(self) -> tuple[Vector, Vector]:
@@ -181,34 +250,12 @@ class LaneProgram:
         return roots[:n_a], roots[n_a:]
 
     def outputs(self, want: int) -> int:
-        """Numbers that a kernel writes for one configuration."""
-        return output_size(self.counts, int(self.code[t.MOTORS]), int(self.code[t.TWIST]), want)
+        """Numbers that `run` writes for one configuration."""
+        return sum(self.sections[name].size for name in wanted(want))
 
-    def named(self, out: Matrix, want: int) -> RawLanes:
-        """What a kernel wrote, N x `outputs(want)`, by name; views, no copies."""
-        return _raw(out, self.counts, int(self.code[t.MOTORS]), int(self.code[t.TWIST]), want)
-
-    def _run(
-        self, values: Matrix, constants: Matrix | None, want: int, threads: int | None, out: Matrix
-    ) -> None:
-        from vincula.kernels.lanes.entries import lanes_of_this_machine, spectra_entry
-
-        width = 1 if len(values) == 1 else lanes_of_this_machine()
-        run = spectra_entry(width)
-        base, given = self._geometry(constants)
-        blocks = -(-len(values) // width)
-        count = max(1, min(threads or cores(), blocks // SMALLEST_SHARE))
-        rows = _rows(values)
-        if count == 1:
-            run(rows, self.code, given, base, want, 0, blocks, out)
-            return
-        ends = [blocks * k // count for k in range(count + 1)]
-        futures = [
-            pool(count).submit(run, rows, self.code, given, base, want, one, two, out)
-            for one, two in pairwise(ends)
-        ]
-        for future in futures:
-            future.result()
+    def named(self, raw: Matrix, status: NDArray[np.uint8], want: int) -> RawLanes:
+        """What `raw_parts(want, raw)` wrote, by name; views, no copies."""
+        return named(self.sections, raw, status, want)
 
     def matrices(self, values: Matrix, constants: Matrix | None = None) -> NDArray[np.float64]:
         """A = [J_a J_p -G^T] in scaled units, N x m x (n_a + n_p + d), at any values, closed or not.
@@ -268,23 +315,6 @@ def _constants(
     parts = [flat.constants, metric, doubt_constants(model), np.array([curvature])]
     where = {"metric": len(parts[0]), "doubt": len(parts[0]) + len(parts[1])}
     return np.concatenate(parts), where
-
-
-def _raw(out: Matrix, counts: SummaryCounts, n_a: int, d: int, want: int) -> RawLanes:
-    """Named parts of the results."""
-    f = counts.coordinated
-    shapes = [
-        (want & MOTIONS, f, d), (want & MOTIONS, f, n_a), (want & EFFORTS, f, d), (want & EFFORTS, f, n_a),
-        (want & REST, counts.indeterminacy, d), (want & REST, counts.redundancy, n_a),
-    ]  # fmt: skip
-    at = 3 + 2 * f
-    sides: list[NDArray[np.float64] | None] = []
-    for wanted, count, size in shapes:
-        sides.append(out[:, at : at + count * size].reshape(len(out), count, size) if wanted else None)
-        at += count * size if wanted else 0
-    return RawLanes(
-        out[:, 0] == 1.0, out[:, 1], out[:, 2], out[:, 3 : 3 + f], out[:, 3 + f : 3 + 2 * f], *sides
-    )
 
 
 def _rows(array: Matrix) -> Any:

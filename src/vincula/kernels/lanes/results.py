@@ -1,7 +1,8 @@
-"""From rotated motions to efficiencies, bounds and directions, in lanes; then out of the workspace."""
+"""From rotated motions to efficiencies, bounds and directions, in lanes."""
 
 from __future__ import annotations
 
+from vincula.kernels.lanes import outputs as o
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.frames import constant
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
@@ -13,6 +14,7 @@ from vincula.kernels.lanes.vector import (
     larger,
     less,
     load,
+    more,
     neg,
     rsqrt,
     select,
@@ -23,15 +25,18 @@ from vincula.kernels.lanes.vector import (
 
 CLOSED_SQUARE = 0.98e-16
 """Squared gap, in units of the length, up to which a loop is closed for certain (the rule is 1e-8)."""
+OPEN_GAP = 2e-8
+"""Gap, in units of the length, from which a loop is open for certain (the rule is 1e-8)."""
 ALIKE = 1.0 - 1e-9
 """Components this near the largest one count as equal; the first of them is made positive."""
 
 
 @kernel
 def finish(
-    w: Slots, code: Code, constants: Slots, base: int, certain: Lane, settled: Lane, want: int, z: Lane
-) -> None:
-    """Results at `OUTPUT`: certain, residual, angle, efficiencies, bounds, and directions that are wanted.
+    w: Slots, code: Code, constants: Slots, base: int, certain: Lane, settled: Lane, want: int,
+    widest: float, z: Lane,
+) -> None:  # fmt: skip
+    """Results at `OUTPUT`, in the sections of `outputs`: status, residual, angle, and what is wanted.
 
     Args:
         w: The workspace.
@@ -40,30 +45,39 @@ def finish(
         base: See `frames.place_all`.
         certain: 1 where all ranks are certain.
         settled: 1 where all rotations converged.
-        want: Added up: 1 motion directions, 2 effort directions, 4 free twists and idle rates.
+        want: What is wanted, as in `outputs`.
+        widest: Gaps up to this are measured well enough to say that a loop is open.
         z: Zero.
     """
     out, notes = base + code[t.OUTPUT], base + code[t.NOTES]
-    residual = load(w, notes + t.RESIDUAL, z)
-    closed = select(less(residual, splat(CLOSED_SQUARE, z)), certain, z)
-    store(w, out, closed * settled)
-    store(w, out + 1, sqrt(residual))
+    square, one = load(w, notes + t.RESIDUAL, z), splat(1.0, z)
+    residual, nothing = sqrt(square), z / z
+    good = both(less(square, splat(CLOSED_SQUARE, z)), more(certain * settled, z))
+    opened = both(more(residual, splat(OPEN_GAP, z)), less(residual, splat(widest, z)))
+    status = select(good, z, select(opened, splat(float(o.OPENED), z), splat(float(o.UNKNOWN), z)))
+    store(w, out + o.STATUS, status)
+    store(w, out + o.RESIDUAL, residual)
     angle = load(w, notes + t.LIMB_INVERSE, z)
-    store(w, out + 2, angle)
+    store(w, out + o.ANGLE, angle)
+    store(w, out + o.LIMITS, one / z)
+    store(w, out + o.LIMITS + 1, z)
+    store(w, out + o.LIMITS + 2, nothing)
     first, count = code[t.FREE], code[t.FREEDOM] - code[t.FREE] - code[t.IDLE]
-    squares = base + code[t.SQUARES]
+    squares, out = base + code[t.SQUARES], out + o.FIRST
     for p in range(count):
         of_motors = load(w, squares + 2 * (first + p), z)
         of_twist = load(w, squares + 2 * (first + p) + 1, z)
         ratio = of_twist / of_motors
-        store(w, out + 3 + p, ratio)
-        store(w, out + 3 + count + p, _bound(ratio, of_motors, of_twist, angle, z))
-    if want & 3:
-        _all_directions(w, code, constants, base, out + 3 + 2 * count, first, count, want, z)
-    if want & 4:
-        pairs = (want & 1) + (want >> 1 & 1)
-        size = code[t.MOTORS] + code[t.TWIST]
-        _free_and_idle(w, code, base, out + 3 + 2 * count + pairs * count * size, z)
+        store(w, out + p, ratio)
+        if want & o.BOUNDS:
+            store(w, out + count + p, _bound(ratio, of_motors, of_twist, angle, z))
+        if want & o.RECIPROCALS:
+            store(w, out + 3 * count - 1 - p, one / ratio)
+    out += 3 * count
+    if want & (o.MOTIONS | o.EFFORTS):
+        _all_directions(w, code, constants, base, out, first, count, want, z)
+    if want & o.REST:
+        _free_and_idle(w, code, base, out + 2 * count * (code[t.MOTORS] + code[t.TWIST]), z)
 
 
 @kernel
@@ -97,19 +111,25 @@ def _all_directions(
     motors, d = code[t.MOTORS], code[t.TWIST]
     size = motors + d
     squares, metric = base + code[t.SQUARES], code[t.METRIC] + size
+    efforts = out + count * size
     for p in range(count):
         column = base + code[t.MOTIONS] + (first + p) * size
         of_q = rsqrt(load(w, squares + 2 * (first + p), z))
         of_u = rsqrt(load(w, squares + 2 * (first + p) + 1, z))
-        place = out
-        if want & 1:
-            _direction(w, constants, column, motors, d, metric, of_q, of_u, place + p * d,
-                       place + count * d + p * motors, z)  # fmt: skip
-            place += count * size
-        if want & 2:
+        task, motor = out + p * d, out + count * d + p * motors
+        if want & o.MOTIONS or want & o.SHARED:
+            _direction(w, constants, column, motors, d, metric, of_q, of_u, task, motor, z)
+        if want & o.EFFORTS:
             q = count - 1 - p
-            _direction(w, constants, column, motors, d, metric + size, neg(of_q), of_u, place + q * d,
-                       place + count * d + q * motors, z)  # fmt: skip
+            other_task, other_motor = efforts + q * d, efforts + count * d + q * motors
+            if want & o.SHARED:
+                for i in range(d):
+                    store(w, other_task + i, load(w, task + i, z))
+                for i in range(motors):
+                    store(w, other_motor + i, z - load(w, motor + i, z))
+            else:
+                _direction(w, constants, column, motors, d, metric + size, neg(of_q), of_u,
+                           other_task, other_motor, z)  # fmt: skip
 
 
 @kernel
@@ -142,11 +162,3 @@ def _sign(w: Slots, slot: int, count: int, enough: Lane, z: Lane) -> Lane:
         sign = select(here, select(less(x, z), neg(one), one), sign)
         open_ = select(here, z, open_)
     return sign
-
-
-@kernel
-def write(w: Slots, slot: int, count: int, out: Slots, first: int, width: int) -> None:
-    """Copy `count` slots to rows of `out`, one a lane, from row `first` on; what exceeds is left out."""
-    for lane in range(min(width, out.shape[0] - first)):
-        for k in range(count):
-            out[first + lane, k] = w[(slot + k) * width + lane]

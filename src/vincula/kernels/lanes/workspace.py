@@ -1,4 +1,4 @@
-"""A block of W configurations in the workspace: values in, one aligned workspace a thread."""
+"""A block of W configurations in the workspace: values in, numbers out, one aligned workspace a thread."""
 
 from __future__ import annotations
 
@@ -45,6 +45,14 @@ def enter(
             w[first + k * width + lane] = values[source, k]
     enter_constants(w, constants, block, width)
     scale_values(w, code, constants, base, z)
+
+
+@kernel
+def leave(w: Slots, slot: int, count: int, out: Slots, first: int, width: int) -> None:
+    """Copy `count` slots to rows of `out`, one a lane, from row `first` on; what exceeds is left out."""
+    for lane in range(min(width, out.shape[0] - first)):
+        for k in range(count):
+            out[first + lane, k] = w[(slot + k) * width + lane]
 
 
 @kernel
