@@ -81,7 +81,7 @@ BAD = [
         "s.yaml:6:13: quantities: no quantity is named 'kinematic.smalest'; did you mean",
     ),
     ("grid:", "gird:", "unknown key 'gird'; did you mean 'grid'?"),
-    ("sweep: 1", "sweep: 2", "s.yaml:1:8: sweep: expected the key `sweep: 1` (got 2)"),
+    ("sweep: 1", "sweep: 2", "s.yaml:1:8: sweep: got version 2, expected 1"),
     ("example:serial-2r", "example:serial-3r", "s.yaml:2:8: model: no example is named 'serial-3r'"),
     ("example:serial-2r", "missing.yaml", "missing.yaml: there is no such file"),
     ("quantities:", "table: a.csv\nquantities:", "got grid and table, expected one of the keys"),

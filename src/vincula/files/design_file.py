@@ -28,8 +28,9 @@ from vincula.files.schema_values import Context
 from vincula.files.source import open_source
 from vincula.files.sweep_file import SweepFile
 from vincula.files.sweep_schema import Amount
-from vincula.files.tree import Document, Leaf, Location, Table
+from vincula.files.tree import Document, Location
 from vincula.files.treefile import read_tree
+from vincula.files.versions import check_version
 from vincula.files.weights import read_weights
 from vincula.spatial.units import UNITS
 
@@ -68,13 +69,7 @@ def read_design(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -
         FileError: It cannot be read or does not fit; every problem with file, line and column.
     """
     document = read_tree(open_source(path, limits), limits)
-    version = document.node(["design"])
-    if not isinstance(document.root, Table) or not isinstance(version, Leaf) or version.value != 1:
-        got = f" (got {shown(version.value)})" if isinstance(version, Leaf) else ""
-        raise FileError(
-            f"{document.place(['design']).text()}: expected the key `design: 1`{got}: the file is no design "
-            "file, version 1"
-        )
+    check_version(document, "design", "design file")
     entry = validated(document, DesignEntry, Context(limits=limits))
     if entry is None:
         document.problems.refuse()

@@ -25,6 +25,7 @@ from vincula.files.snapping import Snapping
 from vincula.files.snapping_native import snapped_tree
 from vincula.files.tree import Document, Leaf, Location, Table
 from vincula.files.units import Scale, Units
+from vincula.files.versions import check_version
 from vincula.mechanism.drawing import In, Reference
 from vincula.mechanism.drawn_mechanism import Outline
 from vincula.mechanism.mechanism import Mechanism
@@ -77,7 +78,7 @@ def read_native(
         FileError: All independent problems at once, each with file, line, column, path and value.
         ModelError: A setting that is no number.
     """
-    _refuse_other_files(document)
+    check_version(document, "vincula", "vincula native file")
     if snapping is not None:
         document = snapped_tree(document, snapping)
     base = _base(document, load_base)
@@ -117,7 +118,7 @@ def outline_native(
         TypeError: More than what is drawn depends on traced numbers.
         FileError: The file is refused with these numbers.
     """
-    _refuse_other_files(document)
+    check_version(document, "vincula", "vincula native file")
     base = _base(document, load_base)
     units = _units(document)
     space = _space(document, base)
@@ -147,24 +148,6 @@ def _drawn_reference(entry: NativeFile, units: Units, base: Mechanism | None) ->
         )
     known = base.reference if base else None
     return None if known is None else Reference(known.body, In(known.body, list(known.origin)), known.axes)
-
-
-def _refuse_other_files(document: Document) -> None:
-    version = document.node(["vincula"])
-    if isinstance(document.root, Table) and isinstance(version, Leaf):
-        if version.value == 1 and not isinstance(version.value, bool):
-            return
-        place = document.place(["vincula"])
-        raise FileError(f"{place.text()}: got version {shown(version.value)}, expected 1")
-    near = [key for key in document.root.entries if key.lower().startswith("vin")] if isinstance(
-        document.root, Table) else []  # fmt: skip
-    what = f" (got {shown(near[0])})" if near else ""
-    beside = isinstance(document.root, Table) and {"closed_loop", "name_mot"} & set(document.root.entries)
-    hint = "; it looks like a Gepetto side file: name the URDF file beside it" if beside else ""
-    raise FileError(
-        f"{document.place([]).text()}: expected the key `vincula: 1`{what}: "
-        f"the file is no vincula native file, version 1{hint}"
-    )
 
 
 def _base(document: Document, load_base: LoadBase) -> Loaded | None:

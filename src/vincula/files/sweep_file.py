@@ -14,15 +14,15 @@ import numpy as np
 from vincula.arrays import Vector
 from vincula.errors import FileError, VinculaError
 from vincula.files.limits import DEFAULT_LIMITS, Limits
-from vincula.files.problems import shown
 from vincula.files.schema_problems import validated
 from vincula.files.schema_values import Context
 from vincula.files.source import open_source
 from vincula.files.sweep_schema import Amount, RangeEntry, SweepEntry
 from vincula.files.sweep_table import read_columns
-from vincula.files.tree import Document, Leaf, Location, Table
+from vincula.files.tree import Document, Location
 from vincula.files.treefile import read_tree
 from vincula.files.units import Units
+from vincula.files.versions import check_version
 from vincula.sweep.points import MOST_POINTS, Grid, Points, PointTable, Polyline
 from vincula.sweep.scattered import LowDiscrepancyPoints, RandomPoints
 
@@ -118,13 +118,7 @@ def read_sweep(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) ->
         FileError: It cannot be read or does not fit; every problem with file, line and column.
     """
     document = read_tree(open_source(path, limits), limits)
-    version = document.node(["sweep"])
-    if not isinstance(document.root, Table) or not isinstance(version, Leaf) or version.value != 1:
-        got = f" (got {shown(version.value)})" if isinstance(version, Leaf) else ""
-        raise FileError(
-            f"{document.place(['sweep']).text()}: expected the key `sweep: 1`{got}: the file is no sweep "
-            "file, version 1"
-        )
+    check_version(document, "sweep", "sweep file")
     entry = validated(document, SweepEntry, Context(limits=limits))
     if entry is None:
         document.problems.refuse()

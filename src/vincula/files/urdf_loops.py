@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
@@ -24,8 +25,8 @@ _SAME = 1e-14
 """Relative difference of coefficients, and of a residual at home, that is rounding."""
 
 
-class PlusLoops:
-    """URDF+: `<loop>` for a loop joint, `<coupling>` for axes on two ways down the tree.
+class UrdfLoops(ABC):
+    """Loops and couplings in one of the conventions.
 
     Args:
         mechanism: The mechanism.
@@ -48,10 +49,30 @@ class PlusLoops:
         left: Sequence[Coupling],
     ) -> None:
         self._mechanism, self._tree, self._joints = mechanism, tree, joints
+        self.mimics, self.left = list(followings), list(left)
+        self._prepare()
+
+    @abstractmethod
+    def _prepare(self) -> None:
+        """Choose names and what each coupling becomes."""
+
+    @abstractmethod
+    def lines(self) -> Iterator[str]:
+        """What the convention adds to the file."""
+
+    @abstractmethod
+    def changes(self) -> list[str]:
+        """What is held in another form, one sentence a thing."""
+
+
+class PlusLoops(UrdfLoops):
+    """URDF+: `<loop>` for a loop joint, `<coupling>` for axes on two ways down the tree."""
+
+    def _prepare(self) -> None:
         self._couplings: list[str] = []
-        by_name = {coupling.name: coupling for coupling in mechanism.couplings}
-        self.mimics = [f for f in followings if not self._couple(by_name[f.coupling])]
-        self.left = [coupling for coupling in left if not self._couple(coupling)]
+        by_name = {coupling.name: coupling for coupling in self._mechanism.couplings}
+        self.mimics = [f for f in self.mimics if not self._couple(by_name[f.coupling])]
+        self.left = [coupling for coupling in self.left if not self._couple(coupling)]
 
     def lines(self) -> Iterator[str]:
         """All loops and couplings."""
@@ -118,33 +139,13 @@ class PlusLoops:
         return way
 
 
-class GepettoLoops:
-    """A Gepetto side file: pairs of frames that coincide; each is a link, if need be an added one.
+class GepettoLoops(UrdfLoops):
+    """A Gepetto side file: pairs of frames that coincide; each is a link, if need be an added one."""
 
-    Args:
-        mechanism: The mechanism.
-        tree: Its tree and loops.
-        joints: The written joints.
-        followings: Couplings of two axes.
-        left: The other couplings.
-
-    Attributes:
-        mimics: Couplings that are `<mimic>`.
-        left: Couplings that the format cannot hold.
-    """
-
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        tree: WrittenTree,
-        joints: UrdfJoints,
-        followings: Sequence[Following],
-        left: Sequence[Coupling],
-    ) -> None:
-        self._mechanism, self._tree, self._joints = mechanism, tree, joints
-        self.mimics, self.left = list(followings), list(left)
+    def _prepare(self) -> None:
+        tree, mechanism = self._tree, self._mechanism
         taken = {*tree.poses, *(joint.name for joint in mechanism.all_joints)}
-        taken |= {frame.name for frame in mechanism.frames} | {joints.root}
+        taken |= {frame.name for frame in mechanism.frames} | {self._joints.root}
         self._seats: list[tuple[str, str, Pose]] = []
         self._pairs = [
             (self._seat(loop, loop.first, loop.on_first, "first", taken),

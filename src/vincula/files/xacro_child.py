@@ -14,7 +14,7 @@ import json
 import os
 import sys
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, TextIO
 
 _FORBIDDEN: Final = (
     "socket.", "subprocess.", "os.system", "os.exec", "os.spawn", "os.posix_spawn", "os.fork", "os.remove",
@@ -87,24 +87,29 @@ def main() -> None:
     guard = Guard([os.path.dirname(job["file"])])
     xacro.xml.dom.minidom.parse = _parser(job, xml.dom.minidom.parseString)
     substitutions._eval_find = substitutions._eval_dict["find"] = _finder(job, guard)
-    answer: dict[str, Any]
     output, sys.stdout, sys.stderr = sys.stdout, io.StringIO(), io.StringIO()
+    # Whatever the file's expressions raise ends the process, and this is its last word.
+    sys.excepthook = lambda _kind, error, _trace: _answer(output, {"error": _in_words(error)})
     sys.addaudithook(guard)
-    try:
-        document, names = _expanded(xacro, job)
-        text = document.toxml()
-        if len(text.encode()) > job["bytes"]:
-            answer = {"error": f"the file expands to more than {job['bytes']} bytes"}
-        else:
-            answer = {"text": text, "arguments": names}
-    except MemoryError:
-        answer = {"error": "the file needs too much memory"}
-    except RecursionError:
-        answer = {"error": "the file calls itself without end"}
-    except Exception as error:  # noqa: BLE001  (whatever the file's expressions raise is told)
-        answer = {"error": " ".join(str(error).split())[:500] or type(error).__name__}
+    document, names = _expanded(xacro, job)
+    text = document.toxml()
+    if len(text.encode()) > job["bytes"]:
+        _answer(output, {"error": f"the file expands to more than {job['bytes']} bytes"})
+    else:
+        _answer(output, {"text": text, "arguments": names})
+
+
+def _answer(output: TextIO, answer: dict[str, Any]) -> None:
     json.dump(answer, output)
     output.flush()
+
+
+def _in_words(error: BaseException) -> str:
+    if isinstance(error, MemoryError):
+        return "the file needs too much memory"
+    if isinstance(error, RecursionError):
+        return "the file calls itself without end"
+    return " ".join(str(error).split())[:500] or type(error).__name__
 
 
 def _expanded(xacro: Any, job: dict[str, Any]) -> tuple[Any, list[str]]:

@@ -18,6 +18,7 @@ from vincula.mechanism.joint_types import JointType
 from vincula.spatial.poses import Pose, rotation_vector
 from vincula.spatial.selectors import contact_components
 from vincula.spatial.space import Space
+from vincula.spatial.twists import cross
 
 Turning = Literal["vector", "tilt", "between axes"]
 _X = np.array([1.0, 0.0, 0.0])
@@ -148,7 +149,7 @@ def _tilt(axis: Vector) -> tuple[Vector, Matrix]:
     turn = np.array([-axis[1], axis[0], 0.0]) / sine
     beside = np.array([-turn[1], turn[0]])
     rate = np.outer(turn[:2], turn)
-    rate += np.outer((angle / sine) * beside, _cross(axis, turn))
+    rate += np.outer((angle / sine) * beside, cross(axis, turn))
     error: Vector = angle * turn[:2]
     return error, rate
 
@@ -161,13 +162,3 @@ def _angle_between(axis: Vector, drawn: Vector) -> tuple[Vector, Matrix]:
     if size == 0.0:
         return np.array([error]), np.array([[1.0, 0.0, 0.0]])
     return np.array([error]), across[None, :] / size
-
-
-def _cross(one: Vector, two: Vector) -> Vector:
-    return np.array(
-        [
-            one[1] * two[2] - one[2] * two[1],
-            one[2] * two[0] - one[0] * two[2],
-            one[0] * two[1] - one[1] * two[0],
-        ]
-    )

@@ -25,7 +25,7 @@ from vincula.mechanism.layout import Layout, RowArrays, ScrewArrays
 from vincula.mechanism.motor_weights import weights_of_motors
 from vincula.mechanism.residuals import CLOSED, axis_values, residuals_of_frames
 from vincula.model import LinearModel
-from vincula.spatial.twists import block_rotation
+from vincula.spatial.twists import block_rotation, cross_rows
 
 if TYPE_CHECKING:
     from vincula.mechanism.mechanism import Mechanism
@@ -125,7 +125,7 @@ def screw_matrix(screws: ScrewArrays, frames: PlacedFrames, origin: Vector) -> M
     if len(origin) == 2:
         around = np.stack([-arm[:, 1], arm[:, 0]], axis=1) * screws.turn[:, None]
         return np.vstack([(slid + around).T, screws.turn])
-    return np.vstack([(slid + _cross(turned, arm)).T, turned.T])
+    return np.vstack([(slid + cross_rows(turned, arm)).T, turned.T])
 
 
 def blocked_matrix(rows: RowArrays, frames: PlacedFrames, origin: Vector) -> Matrix:
@@ -139,13 +139,7 @@ def blocked_matrix(rows: RowArrays, frames: PlacedFrames, origin: Vector) -> Mat
     turn = (rotation @ rows.turn[:, :, None])[:, :, 0]
     for k, other, axis in rows.across:
         turn[k] = common_normal(rotation[k, :, 2], frames.rotation[other] @ axis)
-    return np.hstack([push, _cross(arm, push) + turn])
-
-
-def _cross(one: Matrix, two: Matrix) -> Matrix:
-    """Row by row cross product (numpy's own is slow on few rows)."""
-    (ax, ay, az), (x, y, z) = one.T, two.T
-    return np.stack([ay * z - az * y, az * x - ax * z, ax * y - ay * x], axis=1)
+    return np.hstack([push, cross_rows(arm, push) + turn])
 
 
 def _matrices(

@@ -19,6 +19,7 @@ from vincula.arrays import Matrix, Vector
 from vincula.errors import TopologyError, UnknownNameError, listing
 from vincula.spatial.poses import Pose, rotation_about, rotation_from_quaternion_wxyz
 from vincula.spatial.space import PLANAR, Space
+from vincula.spatial.twists import cross
 
 _Z: Final = np.array([0.0, 0.0, 1.0])
 
@@ -218,14 +219,9 @@ def axis_twists(
             twists[:2, k] = screw.slide * axis + screw.turn * np.array([-arm[1], arm[0]])
             twists[2, k] = screw.turn
         else:
-            twists[:3, k] = screw.slide * axis + screw.turn * _cross(axis, arm)
+            twists[:3, k] = screw.slide * axis + screw.turn * cross(axis, arm)
             twists[3:, k] = screw.turn * axis
     return twists
-
-
-def _cross(one: Vector, two: Vector) -> Vector:
-    (ax, ay, az), (x, y, z) = one, two
-    return np.array([ay * z - az * y, az * x - ax * z, ax * y - ay * x])
 
 
 def angle_about_z(first: Pose, second: Pose) -> float:

@@ -10,6 +10,23 @@ import numpy as np
 from vincula.arrays import Matrix, Vector
 
 
+def cross(one: Vector, two: Vector) -> Vector:
+    """Cross product of two vectors in space (numpy's own is slow on single ones)."""
+    (ax, ay, az), (x, y, z) = one, two
+    return np.array([ay * z - az * y, az * x - ax * z, ax * y - ay * x])
+
+
+def cross_rows(one: Matrix, two: Matrix) -> Matrix:
+    """Cross products row by row (numpy's own is slow on few rows).
+
+    Args:
+        one: n x 3.
+        two: n x 3.
+    """
+    (ax, ay, az), (x, y, z) = one.T, two.T
+    return np.stack([ay * z - az * y, az * x - ax * z, ax * y - ay * x], axis=1)
+
+
 def moment_arm(offset: Vector) -> Matrix:
     """The matrix B with B @ omega = omega x offset: s x 1 in the plane, 3 x 3 in space.
 
