@@ -69,8 +69,8 @@ def test_results_of_one_configuration_are_its_own() -> None:
     first["kinematic.efficiencies"][...] = -1.0
     compiled.evaluate(lanes[1], ASKED)
     again = compiled.evaluate(lanes[0], ASKED)
-    for name in kept:
-        np.testing.assert_array_equal(again[name], kept[name], err_msg=name)
+    for name, value in kept.items():
+        np.testing.assert_array_equal(again[name], value, err_msg=name)
 
 
 @pytest.mark.parametrize("name", NAMES)
