@@ -10,9 +10,11 @@ from scipy.linalg import null_space
 
 import vincula as vc
 from vincula.design.asking import Asking
+from vincula.design.constraints import Relation
 from vincula.design.measures import Index
 from vincula.design.neighbourhood import MOVES, neighbourhood
 from vincula.design.optimum import APART
+from vincula.design.polish import polished
 
 LOW, HIGH = np.array([-1.3, -1.4]), np.array([-0.6, -0.7])
 TOLERANCE = np.array([5e-3, 0.0])
@@ -137,3 +139,19 @@ def test_runners_up_lie_apart_and_are_the_best_that_do(found: Any) -> None:
             beside = [v for other, v in zip(kept, values, strict=True)
                       if np.abs((design - other) / span).max() <= APART]  # fmt: skip
             assert min(beside) <= value * (1 + 1e-9)
+
+
+@pytest.mark.slow
+def test_an_optimum_on_the_edge_of_a_constraint_is_followed_along_it() -> None:
+    """The slope points across the edge y - x = 0.5; the best design on it is that of a grid along it."""
+    problem = vc.DesignProblem(
+        build,
+        [vc.DesignVariable("x", LOW[0], HIGH[0]), vc.DesignVariable("y", LOW[1], HIGH[1])],
+        Index(quantity="kinematic.condition:translation"),
+        constraints=[Relation(value=lambda v: v["y"] - v["x"], most=0.1)],
+        path="reference",
+    )
+    best, how = polished(Asking(problem, "edge"), np.array([-1.0, -0.95]))
+    along = [condition(x, x + 0.1) for x in np.linspace(-1.3, -0.8, 2001)]
+    assert how == "simplex"
+    assert condition(*best) == pytest.approx(min(along), rel=1e-4)

@@ -8,6 +8,7 @@ import numpy as np
 
 from vincula.arrays import Vector
 from vincula.design.gradients import slope
+from vincula.design.judged import INFEASIBLE
 
 if TYPE_CHECKING:
     from vincula.design.asking import Asking
@@ -72,7 +73,8 @@ def _by_gradients(asking: Asking, design: Vector) -> tuple[Vector, float] | None
         nonlocal lost
         at = np.clip(space.low + unit * span, space.low, space.high)
         merit = float(asking(at[None, :]).merit()[0])
-        found = slope(asking.problem, at)
+        # Across the edge of what is allowed the merit jumps, and a step along the edge has no gradient here.
+        found = slope(asking.problem, at) if merit < INFEASIBLE else None
         if found is None:
             lost = True
             raise StopIteration
