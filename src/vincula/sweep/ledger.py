@@ -11,7 +11,7 @@ import hashlib
 import json
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -96,12 +96,11 @@ class Ledger:
         try:
             if not path.is_file():
                 raise SweepError(f"{path}: there is no such ledger, so no sweep to go on with", kind="usage")
-            self._base = _connected(path)
-            try:
+            with ExitStack() as unless_opened:
+                self._base = _connected(path)
+                unless_opened.callback(self._base.close)
                 self.manifest = self._checked_manifest()
-            except BaseException:
-                self._base.close()
-                raise
+                unless_opened.pop_all()
         except (sqlite3.Error, OSError, UnicodeError) as error:
             raise self._damaged(str(error)) from None
 
@@ -272,12 +271,11 @@ class Ledger:
 
 def _connected(path: Path) -> sqlite3.Connection:
     base = sqlite3.connect(path, timeout=30.0, check_same_thread=False)
-    try:
+    with ExitStack() as unless_connected:
+        unless_connected.callback(base.close)
         base.execute("PRAGMA journal_mode = DELETE").fetchone()
         base.execute("PRAGMA synchronous = EXTRA")
-    except BaseException:
-        base.close()
-        raise
+        unless_connected.pop_all()
     return base
 
 
