@@ -35,11 +35,16 @@ T = TypeVar("T")
 Row = dict[str, float | None]
 
 
-def affordable(sixteen: Callable[[], object], most: int) -> int:
-    """How many configurations take about two seconds, judged by a call with sixteen."""
-    start = time.perf_counter()
-    sixteen()
-    return min(most, 16 * max(1, int(2.0 / (time.perf_counter() - start))))
+def affordable(run: Callable[[cases.Array], object], numbers: cases.Array) -> int:
+    """How many configurations take about two seconds, judged by ever larger calls."""
+    count = min(16, len(numbers))
+    while True:
+        start = time.perf_counter()
+        run(numbers[:count])
+        spent = time.perf_counter() - start
+        if count == len(numbers) or spent > 0.5:
+            return min(len(numbers), max(16, int(count * 2.0 / spent)))
+        count = min(8 * count, len(numbers))
 
 
 class Bench:
@@ -105,7 +110,7 @@ class Bench:
             except (vc.VinculaError, RuntimeError) as error:
                 self.note(f"{name} is left out: {error}")
                 continue
-            few = numbers[: affordable(lambda one=one, some=numbers[:16]: one.run(some), len(numbers))]
+            few = numbers[: affordable(one.run, numbers)]
             peers[name] = Peer(lambda one=one, few=few: one.run(few), len(few))
         return peers
 
