@@ -102,18 +102,17 @@ class Force(Measure):
         finite, free = (classes == CLASS_CODES[kind] for kind in ("finite", "infinite"))
         whole = metric.definite & ((finite | free).sum(axis=-1) == len(load))
         size = float(np.linalg.norm(metric.factor @ load))
-        found = np.full(values.shape[:-1], np.nan)
-        for place in zip(*np.nonzero(lanes.reached), strict=True):
-            if not whole[place]:
-                # Some wrench moves the member or is not weighed: the set itself says whether this one does.
-                model = lanes.model(*map(int, place))
-                found[place] = passive_force_ellipsoid(model, lanes.weights).along(load)
-                continue
-            own = finite[place]
-            part = shares[place][own]
-            carried = negligible(float(np.linalg.norm(part)), size)
-            found[place] = np.inf if carried else 1.0 / np.sqrt((part**2 / values[place][own]).sum())
-        return found
+        with np.errstate(invalid="ignore", divide="ignore"):
+            parts = np.where(finite, shares, 0.0) ** 2
+            length: Any = np.sqrt(parts.sum(axis=-1))
+            carried = negligible(length, size)
+            most = 1.0 / np.sqrt((parts / np.where(finite, values, 1.0)).sum(axis=-1))
+            found = np.where(lanes.reached, np.where(carried, np.inf, most), np.nan)
+        for place in zip(*np.nonzero(lanes.reached & ~whole), strict=True):
+            # Some wrench moves the member or is not weighed: the set itself says whether this one does.
+            model = lanes.model(*map(int, place))
+            found[place] = passive_force_ellipsoid(model, lanes.weights).along(load)
+        return np.asarray(found)
 
 
 def _said(direction: Sequence[float]) -> str:

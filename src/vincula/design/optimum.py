@@ -198,12 +198,10 @@ def _on_bounds(problem: DesignProblem, design: Vector) -> dict[str, str]:
 
 def runners_up(problem: DesignProblem, found: Judged, most: int = 6) -> Judged:
     """The best designs that lie apart from each other, the best of all first."""
-    order = np.argsort(found.merit(), kind="stable")
-    span = problem.space.high - problem.space.low
+    places = found.designs / (problem.space.high - problem.space.low)
+    merit = np.where(found.feasible, found.merit(), np.inf)
     kept: list[int] = []
-    for k in order:
-        if not found.feasible[k] or len(kept) == most:
-            break
-        if all(np.abs((found.designs[k] - found.designs[j]) / span).max() > APART for j in kept):
-            kept.append(int(k))
+    while len(kept) < most and np.isfinite(merit).any():
+        kept.append(int(np.argmin(merit)))
+        merit[np.abs(places - places[kept[-1]]).max(axis=1) <= APART] = np.inf
     return found.part(np.array(kept, dtype=int))
