@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 from pathlib import Path
 
 import pytest
+
+from vincula.design.linkages import five_bar
 
 COMMANDS = {
     "analyze": ["analyze", "example:five-bar"],
@@ -42,6 +45,29 @@ def test_top_level_keys(run_json, page: str, command: str) -> None:
         key for cells in table(page, f"**`{command}`**") for key in re.findall(r"`(\w+)`", cells[0])
     }
     assert documented == set(found) - {"schema"}
+
+
+def test_keys_of_designs(page: str) -> None:
+    """Of the three kinds together; one design each is enough."""
+    import vincula as vc
+    from vincula.design.measures import Index
+
+    small = {
+        "path": "reference",
+        "weights": vc.Weights(twist=[1.0, 1.0, 0.0]),
+        "variables": [vc.DesignVariable("near", 0.2, 0.3)],
+    }
+    even, fast = Index(quantity="kinematic.condition:translation"), Index(quantity="kinematic.smallest")
+    one = vc.DesignProblem(five_bar, objectives=even, **small)
+    found = [one.optimize(population=5, generations=1, polish=False), one.scan("near", counts=2)]
+    if importlib.util.find_spec("pymoo") is not None:
+        two = vc.DesignProblem(five_bar, objectives=[even, fast], **small)
+        found.append(two.front(population=4, generations=1))
+    documented = {key for cells in table(page, "**`design`**") for key in re.findall(r"`(\w+)`", cells[0])}
+    keys = {key for one in found for key in one.to_dict()} - {"schema"}
+    assert keys <= documented
+    if len(found) == 3:
+        assert keys == documented
 
 
 def test_keys_of_the_short_objects(run_json, page: str, tmp_path: Path) -> None:
