@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -168,4 +169,4 @@ def _numbers(values: ArrayLike, what: str) -> NDArray[np.float64]:
 
 def _lanes(table: Matrix, shape: tuple[int, ...]) -> Matrix:
     wide = np.broadcast_to(table, (*shape, table.shape[-1]))
-    return np.ascontiguousarray(wide).reshape(-1, table.shape[-1])
+    return np.ascontiguousarray(wide).reshape(math.prod(shape), table.shape[-1])  # there may be no motors

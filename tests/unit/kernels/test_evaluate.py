@@ -281,3 +281,12 @@ def test_open_loops_need_no_second_look() -> None:
     np.testing.assert_allclose(fast["closure.residual"], slow["closure.residual"], rtol=1e-9, atol=1e-14)
     lane = int(np.flatnonzero(fast.status == OPEN)[0])
     assert fast.reason(lane) == slow.reason(lane)
+
+
+def test_motor_values_of_a_mechanism_without_motors() -> None:
+    """Loops are closed from where the lane before stands; there is nothing to give."""
+    compiled = vc.compile(vc.load("example:five-bar").with_active([]))
+    for shape in ((), (3,), (2, 0)):
+        found = compiled.evaluate(np.empty((*shape, 0)), ("mobility",), given="motors", path="reference")
+        assert found.shape == shape
+        assert (found["mobility"] == 2).all()
