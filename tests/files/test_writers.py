@@ -90,6 +90,24 @@ def test_every_real_robot_is_read_back(model: str, to: str, models: Path, tmp_pa
     same_poses(robot, again, origins=not moved)
 
 
+def test_parts_of_one_name_get_names_of_their_own_in_sdf(tmp_path: Path) -> None:
+    def hinge(name: str, first: str, second: str, x: float, y: float) -> vc.Revolute:
+        return vc.Revolute(name, first, second, at=(x, y, 0.0), axis=(0.0, 0.0, 1.0))
+
+    joints = [hinge("crank", "ground", "crank", 0, 0), hinge("rod", "crank", "rod", 0, 1),
+              hinge("o3", "rod", "crank_joint", 2, 2), hinge("o4", "ground", "crank_joint", 3, 0)]
+    mechanism = vc.Mechanism.spatial(joints=joints, active=["crank"], reference=vc.Reference("rod"))
+    path = tmp_path / "robot.sdf"
+    told = " ".join(written(mechanism, path, "sdf").lost)
+    assert "the joint becomes 'crank_joint_'" in told
+    assert "the joint becomes 'rod_joint'" in told
+    again, _ = read_back(mechanism, path, "sdf", lossy=True)
+    assert [joint.name for joint in again.joints] == ["crank_joint_", "rod_joint", "o3", "o4"]
+    assert again.active == ("crank_joint_",)
+    same_numbers(mechanism, again)
+    same_poses(mechanism, again, origins=True)
+
+
 @pytest.mark.parametrize("to", ["mjcf", "urdf-plus", "urdf-gepetto"])
 def test_a_loop_that_is_open_stays_open_by_the_same_gap(to: str, models: Path, tmp_path: Path) -> None:
     if to == "mjcf":

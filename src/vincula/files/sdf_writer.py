@@ -6,7 +6,7 @@ listed, never left out in silence.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape, quoteattr
 
@@ -18,6 +18,7 @@ from vincula.files.problems import shown
 from vincula.files.written import (
     Written,
     bad_names,
+    free_name,
     in_space,
     lost_locks,
     number,
@@ -27,7 +28,7 @@ from vincula.files.written import (
     said_with_commands,
 )
 from vincula.files.written_couplings import followings
-from vincula.mechanism.parts import GROUND, Frame, Joint
+from vincula.mechanism.parts import GROUND, Body, Frame, Joint
 from vincula.spatial.poses import Pose
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ TYPES: Final = {
     "fixed": "fixed",
 }
 """Joint types of ours that SDF has, and its names."""
+
+_RESERVED: Final = ("world", "__model__")
 
 
 def sdf_data(mechanism: Mechanism) -> Written:
@@ -63,21 +66,23 @@ class _Writer:
         }
         found, self._left = followings(mechanism)
         self._mimics = {following.follower: following for following in found}
-        taken = {
-            part.name for parts in (mechanism.bodies, mechanism.joints, mechanism.frames) for part in parts
-        }
-        self._point = reference_frame(mechanism, taken)
+        taken = set(_RESERVED)
+        self._links = _distinct(mechanism.bodies, "_link", taken) | {GROUND: "world"}
+        self._joints = _distinct(mechanism.joints, "_joint", taken)
+        self._frames = _distinct(mechanism.frames, "_frame", taken)
+        self._point = reference_frame(mechanism, {frame.name for frame in mechanism.frames} | taken)
 
     def links(self) -> Iterator[str]:
         """Links at their home poses, and the named frames."""
         for body in self._mechanism.bodies:
-            yield f"  <link name={quoteattr(body.name)}>{_pose(body.pose)}</link>"
+            yield f"  <link name={quoteattr(self._links[body.name])}>{_pose(body.pose)}</link>"
         frames = list(self._mechanism.frames)
         if self._point is not None and self._point[0] not in {frame.name for frame in frames}:
             frames.append(Frame(*self._point))
         for frame in frames:
-            carrier = quoteattr(_link(frame.body))
-            yield f"  <frame name={quoteattr(frame.name)} attached_to={carrier}>{_pose(frame.pose)}</frame>"
+            name = quoteattr(self._frames.get(frame.name, frame.name))
+            carrier = quoteattr(self._links[frame.body])
+            yield f"  <frame name={name} attached_to={carrier}>{_pose(frame.pose)}</frame>"
 
     def joints(self) -> list[Joint]:
         """The joints that SDF has, those with motors first: the file has no other order of motors."""
@@ -92,10 +97,10 @@ class _Writer:
 
     def joint(self, joint: Joint) -> Iterator[str]:
         """One joint: its frame in the child, its axes in that frame."""
-        yield f'  <joint name={quoteattr(joint.name)} type="{TYPES[joint.type]}">'
-        yield f"    <parent>{escape(_link(joint.first))}</parent>"
-        yield f"    <child>{escape(_link(joint.second))}</child>"
-        yield f"    {_pose(joint.frame_on_second, joint.second)}"
+        yield f'  <joint name={quoteattr(self._joints[joint.name])} type="{TYPES[joint.type]}">'
+        yield f"    <parent>{escape(self._links[joint.first])}</parent>"
+        yield f"    <child>{escape(self._links[joint.second])}</child>"
+        yield f"    {_pose(joint.frame_on_second, self._links[joint.second])}"
         first = self._poses[joint.first] @ joint.frame_on_first
         second = self._poses[joint.second] @ joint.frame_on_second
         axes: list[Vector] = []
@@ -134,11 +139,12 @@ class _Writer:
         mimic = self._mimics[axis]
         leader = mimic.leader
         joint, which = leader, "axis"
-        if leader not in {j.name for j in self._mechanism.joints}:
+        if leader not in self._joints:
             joint, _, last = leader.rpartition(".")
             which = "axis2" if last == "2" else "axis"
         return (
-            f'<mimic joint={quoteattr(joint)} axis="{which}"><multiplier>{number(mimic.factor)}</multiplier>'
+            f'<mimic joint={quoteattr(self._joints[joint])} axis="{which}">'
+            f"<multiplier>{number(mimic.factor)}</multiplier>"
             f"<offset>{number(mimic.offset)}</offset><reference>0</reference></mimic>"
         )
 
@@ -146,9 +152,13 @@ class _Writer:
         """What would be lost, one sentence a thing."""
         mechanism = self._mechanism
         yield from bad_names(mechanism)
-        names = [n.name for part in (mechanism.bodies, mechanism.joints, mechanism.frames) for n in part]
-        for name in dict.fromkeys(n for n in names if names.count(n) > 1 or n in ("world", "__model__")):
-            yield f"the name {shown(name)}: links, joints and frames share one space of names in SDF"
+        for kind, names in (("body", self._links), ("joint", self._joints), ("frame", self._frames)):
+            for name, written in names.items():
+                if written != name and name != GROUND:
+                    yield (
+                        f"the name {shown(name)} of a {kind}: links, joints and frames share one space of "
+                        f"names in SDF; the {kind} becomes {shown(written)}"
+                    )
         for joint in mechanism.joints:
             if joint.type not in TYPES:
                 yield f"joint {joint.name!r}: SDF has no joint of type {joint.type}"
@@ -174,13 +184,22 @@ class _Writer:
         return [*found, *(text for text in said if "speed" not in text)]
 
 
-def _link(body: str) -> str:
-    return "world" if body == GROUND else body
+def _distinct(parts: Sequence[Body | Joint | Frame], ending: str, taken: set[str]) -> dict[str, str]:
+    """Names for parts in SDF's one space of names, which must not be in use by a part of another kind."""
+    found = {}
+    own = {part.name for part in parts}
+    for part in parts:
+        name = part.name
+        if name in taken:
+            name = free_name(name + ending, taken | own)
+        found[part.name] = name
+        taken.add(name)
+    return found
 
 
 def _pose(pose: Pose, relative_to: str = "") -> str:
     """A pose with a quaternion: roll, pitch and yaw lose digits near their singularity."""
     w, x, y, z = pose.as_quaternion_wxyz()
     values = numbers(np.array([*pose.position, x, y, z, w]))
-    base = f" relative_to={quoteattr(_link(relative_to))}" if relative_to else ""
+    base = f" relative_to={quoteattr(relative_to)}" if relative_to else ""
     return f'<pose{base} rotation_format="quat_xyzw">{values}</pose>'
