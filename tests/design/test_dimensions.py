@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import vincula as vc
-from vincula.design.capabilities import Force, Speed
+from vincula.design.capabilities import Force, Speed, Stiffness
 from vincula.design.constraints import Bound, NoSingularity, Relation
 from vincula.design.judged import Judged
 from vincula.design.lengths import Distance, segment_distance
-from vincula.design.linkages import finger, five_bar
+from vincula.design.linkages import ankle, finger, five_bar
 from vincula.design.measures import Index
 from vincula.design.problem import DesignProblem
 from vincula.design.variables import DesignVariable
@@ -148,6 +148,33 @@ def test_speed_and_force_are_those_of_the_ellipsoids() -> None:
     assert judged.objectives[0, 1] == pytest.approx(
         vc.kinematic_ellipsoid(model, unit).support((0.3, 1.0, 0.0))
     )
+
+
+def test_stiffness_is_that_of_springs_in_the_place_of_motors() -> None:
+    """Least energy of springs and load under the closed chain, from J_a, J_p and G alone."""
+    springs = [2.0, 5.0]
+    directions = [(0.0, 0.0, 0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 2.0, 1.0, 0.0)]
+    objectives = [Stiffness(direction=d) for d in directions]
+    objectives.append(Stiffness(direction=directions[0], against=directions[1]))
+    weights = vc.Weights(rate=springs)
+    variables = [DesignVariable("lever", 0.03, 0.08)]
+    problem = DesignProblem(ankle, variables, objectives, weights=weights, path="reference")
+    model = ankle(lever=0.06).linearize()
+    n_a, n_p, d = len(model.motors), len(model.passives), len(model.grasp)
+    rows = np.hstack([model.jacobian_active, model.jacobian_passive, -model.grasp.T])
+    energy = np.zeros((n_a + n_p + d,) * 2)
+    energy[:n_a, :n_a] = np.diag(springs)
+    system = np.block([[energy, rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+    expected = []
+    for direction in directions:
+        load = np.zeros(len(system))
+        unit = np.array(direction) / np.linalg.norm(direction)
+        load[n_a + n_p : n_a + n_p + d] = unit
+        moved = np.linalg.lstsq(system, load, rcond=1e-12)[0]
+        assert system @ moved == pytest.approx(load, abs=1e-9)
+        expected.append(1.0 / float(unit @ moved[n_a + n_p : n_a + n_p + d]))
+    expected.append(expected[0] / expected[1])
+    assert problem.judge([[0.06]]).objectives[0] == pytest.approx(expected, rel=1e-8)
 
 
 def test_lengths_of_a_linkage() -> None:

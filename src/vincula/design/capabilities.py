@@ -1,4 +1,4 @@
-"""Speed and force along a direction, as measures of a design."""
+"""Speed, stiffness and force along a direction, as measures of a design."""
 
 from __future__ import annotations
 
@@ -50,12 +50,70 @@ class Speed(Measure):
 
     def at(self, lanes: Lanes) -> Array:
         """Its value at every configuration, designs x configurations."""
-        values, classes = lanes["kinematic.efficiencies"], lanes["kinematic.classes"]
-        along = lanes["kinematic.task_directions"] @ np.asarray(self.direction)
-        finite = classes == CLASS_CODES["finite"]
-        squares = np.where(finite, np.where(finite, values, 0.0) * np.where(finite, along, 0.0) ** 2, 0.0)
-        free = (classes == CLASS_CODES["infinite"]).any(axis=-1)
-        return np.asarray(np.where(free, np.inf, np.sqrt(squares.sum(axis=-1))))
+        return _largest_along(lanes, self.direction)
+
+
+@final
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stiffness(Measure):
+    """Stiffness of the member along a direction when the motors are springs and everything else is rigid.
+
+    A load F along the unit direction d moves the member by F d'Cd along it, C = J W_q^-1 J' with the
+    weights of the motors as stiffnesses of their springs; d'Cd is the square of the largest speed along d
+    (kinematic ellipsoid, eq. 13).  With unit weights it is therefore N/m for springs of 1 N m/rad or 1 N/m.
+    Infinite where the motors cannot move the member along d, zero where it is free with motors locked.
+
+    Attributes:
+        direction: Components of the twist, order and units as `Space.twist_components`; made a unit vector.
+        against: Another direction: the measure is the ratio of the two stiffnesses; None for no ratio.
+    """
+
+    direction: tuple[float, ...]
+    against: tuple[float, ...] | None = None
+
+    @property
+    def title(self) -> str:
+        """What it is, in words."""
+        other = "" if self.against is None else f" over that along {_said(self.against)}"
+        return f"stiffness along {_said(self.direction)}{other}"
+
+    @property
+    def better(self) -> Sense:
+        """Whether smaller or larger is better."""
+        return "larger"
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What it needs of a batch."""
+        return ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
+
+    def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
+        _refuse_direction(self.direction, compiled)
+        if self.against is not None:
+            _refuse_direction(self.against, compiled)
+
+    def at(self, lanes: Lanes) -> Array:
+        """Its value at every configuration, designs x configurations; NaN for a ratio that is 0/0."""
+        yielding = _largest_along(lanes, _unit(self.direction)) ** 2
+        other = 1.0 if self.against is None else _largest_along(lanes, _unit(self.against)) ** 2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(other / yielding)
+
+
+def _largest_along(lanes: Lanes, direction: Sequence[float]) -> Array:
+    """Largest component of the twist along a direction for a unit of motor effort: the support function."""
+    values, classes = lanes["kinematic.efficiencies"], lanes["kinematic.classes"]
+    along = lanes["kinematic.task_directions"] @ np.asarray(direction)
+    finite = classes == CLASS_CODES["finite"]
+    squares = np.where(finite, np.where(finite, values, 0.0) * np.where(finite, along, 0.0) ** 2, 0.0)
+    free = (classes == CLASS_CODES["infinite"]).any(axis=-1)
+    return np.asarray(np.where(free, np.inf, np.sqrt(squares.sum(axis=-1))))
+
+
+def _unit(direction: Sequence[float]) -> tuple[float, ...]:
+    values = np.asarray(direction, dtype=float)
+    return tuple((values / np.linalg.norm(values)).tolist())
 
 
 @final

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 import numpy as np
 
-from vincula.design.capabilities import Force, Speed
+from vincula.design.capabilities import Force, Speed, Stiffness
 from vincula.design.constraints import Bound, Constraint, JointLimits, NoSingularity, Relation
 from vincula.design.lengths import Clearance, Distance
 from vincula.design.measures import Index, Measure, SingularityDistance, SphereDistance, WorkspaceShare
@@ -225,11 +225,17 @@ class _Maker:
             quantity = entry.quantity
             known = self._builder()
             return self._placed((*place, "quantity"), lambda: _index(quantity, entry.better, how, known))
-        if entry.measure in ("speed", "force"):
+        if entry.against is not None and entry.measure != "stiffness":
+            self._refuse((*place, "against"), VinculaError("only stiffness has another direction to compare"))
+        if entry.measure in ("speed", "stiffness", "force"):
             if entry.along is None:
                 self._refuse(place, VinculaError("the key along is missing: a direction"))
-            direction = tuple(amount.value for amount in entry.along)
-            return (Speed if entry.measure == "speed" else Force)(direction=direction, **how)
+            how["direction"] = tuple(amount.value for amount in entry.along)
+            if entry.against is not None:
+                how["against"] = tuple(amount.value for amount in entry.against)
+            directed: dict[str, Any] = {"speed": Speed, "stiffness": Stiffness, "force": Force}
+            one: Measure = directed[str(entry.measure)](**how)
+            return one
         simple: dict[str, Any] = {
             "sphere": SphereDistance,
             "workspace": WorkspaceShare,

@@ -34,9 +34,10 @@ class VariableEntry(Strict):
 class MeasureEntry(Strict):
     """What designs are judged by: one of `measure` and `quantity`."""
 
-    measure: Literal["sphere", "speed", "force", "workspace", "singularity"] | None = None
+    measure: Literal["sphere", "speed", "stiffness", "force", "workspace", "singularity"] | None = None
     quantity: Text | None = None
     along: Annotated[list[Quantity], Field(min_length=3, max_length=6)] | None = None
+    against: Annotated[list[Quantity], Field(min_length=3, max_length=6)] | None = None
     better: Literal["smaller", "larger"] | None = None
     over: Over | None = None
     weights: Text | None = None
