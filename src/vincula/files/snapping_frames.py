@@ -9,8 +9,9 @@ import numpy as np
 
 from vincula.arrays import Matrix, Vector
 from vincula.mechanism.joint_types import motion
+from vincula.mechanism.kinematics import tree_poses
 from vincula.mechanism.mechanism import Mechanism
-from vincula.mechanism.parts import GROUND, Joint
+from vincula.mechanism.parts import Joint
 from vincula.spatial.poses import Pose
 
 Node = tuple[str, str]
@@ -85,7 +86,7 @@ def moved_ends(mechanism: Mechanism, moves: Mapping[Node, Move], place: Mapping[
             else replace(joint, frame_on_first=frames[0], frame_on_second=frames[1], written=None)
         )
     moved = replace(mechanism, joints=tuple(joints))
-    poses = _home_poses(moved)
+    poses = tree_poses(moved, lambda joint: _motion(moved, joint))
     return replace(moved, bodies=tuple(replace(b, pose=poses[b.name]) for b in moved.bodies))
 
 
@@ -93,17 +94,3 @@ def _motion(mechanism: Mechanism, joint: Joint) -> Pose:
     """The second frame of a joint in its first one at the home configuration."""
     kind = mechanism.type_of(joint)
     return motion(kind, np.array(joint.home, float), joint.lead, joint.second_axis)
-
-
-def _home_poses(mechanism: Mechanism) -> dict[str, Pose]:
-    """Poses of the bodies at the home configuration, through the joints."""
-    poses = {GROUND: Pose.identity(3)}
-    for joint, forward in mechanism.tree:
-        moved = _motion(mechanism, joint)
-        if forward:
-            step = joint.frame_on_first @ moved @ joint.frame_on_second.inverse()
-            poses[joint.second] = poses[joint.first] @ step
-        else:
-            step = joint.frame_on_second @ moved.inverse() @ joint.frame_on_first.inverse()
-            poses[joint.first] = poses[joint.second] @ step
-    return poses

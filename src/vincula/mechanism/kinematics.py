@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,18 +44,29 @@ def grow_tree(mechanism: Mechanism) -> tuple[tuple[Joint, bool], ...]:
 
 def body_poses(mechanism: Mechanism, q: Configuration) -> dict[str, Pose]:
     """Pose of every body in ground axes.  The home poses are returned as they were drawn, exactly."""
-    poses = {GROUND: Pose.identity(mechanism.space.translations)}
     if q is mechanism.home or q == mechanism.home:
-        poses.update({body.name: body.pose for body in mechanism.bodies})
-        return poses
+        ground = {GROUND: Pose.identity(mechanism.space.translations)}
+        return ground | {body.name: body.pose for body in mechanism.bodies}
+    return tree_poses(
+        mechanism,
+        lambda joint: motion(mechanism.type_of(joint), q[joint.name], joint.lead, joint.second_axis),
+    )
+
+
+def tree_poses(mechanism: Mechanism, moved: Callable[[Joint], Pose]) -> dict[str, Pose]:
+    """Pose of every body in ground axes, through the joints of the tree.
+
+    Args:
+        mechanism: The mechanism.
+        moved: The second frame of a joint in its first one.
+    """
+    poses = {GROUND: Pose.identity(mechanism.space.translations)}
     for joint, forward in mechanism.tree:
-        kind = mechanism.type_of(joint)
-        moved = motion(kind, q[joint.name], joint.lead, joint.second_axis)
         if forward:
-            step = joint.frame_on_first @ moved @ joint.frame_on_second.inverse()
+            step = joint.frame_on_first @ moved(joint) @ joint.frame_on_second.inverse()
             poses[joint.second] = poses[joint.first] @ step
         else:
-            step = joint.frame_on_second @ moved.inverse() @ joint.frame_on_first.inverse()
+            step = joint.frame_on_second @ moved(joint).inverse() @ joint.frame_on_first.inverse()
             poses[joint.first] = poses[joint.second] @ step
     return poses
 
