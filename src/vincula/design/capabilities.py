@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
@@ -17,17 +17,38 @@ if TYPE_CHECKING:
     from vincula.design.lanes import Lanes
     from vincula.kernels.compiled import CompiledMechanism
 
+_OF_SPEED: Final = ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
+"""What `_largest_along` needs of a batch."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Directed(Measure):
+    """A measure along one direction, the larger the better.
+
+    Attributes:
+        direction: Components of a twist or a wrench, order and units as `Space.twist_components`.
+    """
+
+    direction: tuple[float, ...]
+
+    @property
+    def better(self) -> Sense:
+        """Whether smaller or larger is better."""
+        return "larger"
+
+    def check(self, compiled: CompiledMechanism) -> None:
+        """Refuse a mechanism that it does not fit."""
+        _refuse_direction(self.direction, compiled)
+
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Speed(Measure):
+class Speed(Directed):
     """Largest component of the member's twist along a direction, for a unit of motor effort.
 
     Attributes:
         direction: Components of the twist, order and units as `Space.twist_components`.
     """
-
-    direction: tuple[float, ...]
 
     @property
     def title(self) -> str:
@@ -35,18 +56,9 @@ class Speed(Measure):
         return f"speed along {_said(self.direction)}"
 
     @property
-    def better(self) -> Sense:
-        """Whether smaller or larger is better."""
-        return "larger"
-
-    @property
     def quantities(self) -> tuple[str, ...]:
         """What it needs of a batch."""
-        return ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        """Refuse a mechanism that it does not fit."""
-        _refuse_direction(self.direction, compiled)
+        return _OF_SPEED
 
     def at(self, lanes: Lanes) -> Array:
         """Its value at every configuration, designs x configurations."""
@@ -55,7 +67,7 @@ class Speed(Measure):
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stiffness(Measure):
+class Stiffness(Directed):
     """Stiffness of the member along a direction when the motors are springs and everything else is rigid.
 
     A load F along the unit direction d moves the member by F d'Cd along it, C = J W_q^-1 J' with the
@@ -68,7 +80,6 @@ class Stiffness(Measure):
         against: Another direction: the measure is the ratio of the two stiffnesses; None for no ratio.
     """
 
-    direction: tuple[float, ...]
     against: tuple[float, ...] | None = None
 
     @property
@@ -78,18 +89,13 @@ class Stiffness(Measure):
         return f"stiffness along {_said(self.direction)}{other}"
 
     @property
-    def better(self) -> Sense:
-        """Whether smaller or larger is better."""
-        return "larger"
-
-    @property
     def quantities(self) -> tuple[str, ...]:
         """What it needs of a batch."""
-        return ("kinematic.efficiencies", "kinematic.classes", "kinematic.task_directions")
+        return _OF_SPEED
 
     def check(self, compiled: CompiledMechanism) -> None:
         """Refuse a mechanism that it does not fit."""
-        _refuse_direction(self.direction, compiled)
+        Directed.check(self, compiled)
         if self.against is not None:
             _refuse_direction(self.against, compiled)
 
@@ -118,7 +124,7 @@ def _unit(direction: Sequence[float]) -> tuple[float, ...]:
 
 @final
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Force(Measure):
+class Force(Directed):
     """Largest load along a direction that a unit of motor torque resists (passive force ellipsoid, eq. 21).
 
     Infinite where the structure carries it with no torque.
@@ -127,27 +133,16 @@ class Force(Measure):
         direction: Components of the wrench, order and units as `Space.wrench_components`.
     """
 
-    direction: tuple[float, ...]
-
     @property
     def title(self) -> str:
         """What it is, in words."""
         return f"force along {_said(self.direction)}"
 
     @property
-    def better(self) -> Sense:
-        """Whether smaller or larger is better."""
-        return "larger"
-
-    @property
     def quantities(self) -> tuple[str, ...]:
         """What it needs of a batch."""
         parts = ("efficiencies", "classes", "task_directions")
         return (*(f"passive_force.{part}" for part in parts), "configuration")
-
-    def check(self, compiled: CompiledMechanism) -> None:
-        """Refuse a mechanism that it does not fit."""
-        _refuse_direction(self.direction, compiled)
 
     def at(self, lanes: Lanes) -> Array:
         """Its value at every configuration, designs x configurations."""

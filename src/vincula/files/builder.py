@@ -22,6 +22,13 @@ Change = tuple[str, tuple[Any, ...], tuple[tuple[str, Any], ...]]
 """A method of `Mechanism` that makes a variant, with its arguments."""
 
 
+def changed_mechanism(mechanism: Mechanism, changes: Sequence[Change]) -> Mechanism:
+    """The mechanism after all changes, in order."""
+    for method, arguments, named in changes:
+        mechanism = getattr(mechanism, method)(*arguments, **dict(named))
+    return mechanism
+
+
 @dataclass(frozen=True)
 class FileBuilder:
     """The mechanism of a file or an example, as a function of the parameters that it declares.
@@ -53,10 +60,9 @@ class FileBuilder:
             ModelError: Values that are no geometry.
         """
         settings: dict[str, float | str] = {**dict(self.settings), **values}
-        made = load(self.path, settings, beside=self.beside, limits=self.limits)
-        for method, arguments, named in self.changes:
-            made = getattr(made, method)(*arguments, **dict(named))
-        return made
+        return changed_mechanism(
+            load(self.path, settings, beside=self.beside, limits=self.limits), self.changes
+        )
 
     def outline(self, **values: Any) -> Outline:
         """What is drawn with traced parameters: the geometry of many mechanisms at once.

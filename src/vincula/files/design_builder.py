@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from vincula.errors import UnknownNameError
-from vincula.files.builder import Change, declared_values
+from vincula.files.builder import Change, changed_mechanism, declared_values
 from vincula.files.expressions import ExpressionError, Measured, evaluate
 from vincula.files.limits import DEFAULT_LIMITS
 from vincula.files.load import EXAMPLE, load
@@ -83,9 +83,7 @@ class NumbersBuilder:
             **{n: v for n, v in values.items() if n not in numbers},
         }
         made = self._changed(numbers, settings) if numbers else load(self.path, settings)
-        for method, arguments, named in self.changes:
-            made = getattr(made, method)(*arguments, **dict(named))
-        return made
+        return changed_mechanism(made, self.changes)
 
     def outline(self, **values: Any) -> Outline:
         """What is drawn with traced numbers: the geometry of many mechanisms at once.
