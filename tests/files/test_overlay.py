@@ -10,20 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.files.native_samples import FIVE_BAR, write
+from tests.parity.mjcf_cases import CONTACTS, GRASPS
 
 import vincula as vc
 from vincula.files.load import load_with_report
-
-GRASPS = (
-    "aloha_dualarm_complete",
-    "aloha_dualarm_complete_right_wrist_passive",
-    "aloha_dualarm_hard",
-    "leap_4finger_hard",
-    "leap_4finger_soft",
-    "robotiq2f85_grasp_driver0p4_parallel_complete",
-    "robotiq2f85_grasp_driver0p4_parallel_hard",
-)
-CONTACTS = {"hard": "hard-finger", "soft": "soft-finger", "complete": "complete"}
 
 
 def overlay_of(case: dict[str, Any], model: Path, *, in_body: bool) -> dict[str, Any]:

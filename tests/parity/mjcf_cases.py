@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-CASES = (
+GRASPS = (
     "aloha_dualarm_complete",
     "aloha_dualarm_complete_right_wrist_passive",
     "aloha_dualarm_hard",
@@ -10,6 +10,11 @@ CASES = (
     "leap_4finger_soft",
     "robotiq2f85_grasp_driver0p4_parallel_complete",
     "robotiq2f85_grasp_driver0p4_parallel_hard",
+)
+"""Those with a grasped object."""
+
+CASES = (
+    *GRASPS,
     "robotiq2f85_pad_driver0p4_parallel_springs_locked",
     "robotiq2f85_pad_home_springs_locked",
     "robotiq2f85_pad_home_underactuated",
