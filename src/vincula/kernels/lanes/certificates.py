@@ -12,7 +12,7 @@ from __future__ import annotations
 from vincula.kernels.lanes import tables as t
 from vincula.kernels.lanes.frames import constant
 from vincula.kernels.lanes.jit import Code, Lane, Slots, kernel
-from vincula.kernels.lanes.reflections import inverse_square, square_below, triangularise
+from vincula.kernels.lanes.reflections import inverse_square, solved_square, square_below, triangularise
 from vincula.kernels.lanes.vector import (
     both,
     fma,
@@ -83,7 +83,11 @@ def _triangle(
 
 @kernel
 def _free_motors(w: Slots, code: Code, base: int, entry: int, stack: int, stride: int, z: Lane) -> Lane:
-    """Inverse for the motor columns of one limb; the rows that they leave go to the stack."""
+    """Inverse for the motor columns of one limb; the rows that they leave go to the stack.
+
+    What it makes of the twist columns is noted: the product of norms would be far too large where rows of a
+    long chain are small in both.
+    """
     m, motors, rank, order = code[entry + 1], code[entry + 2], code[entry + 4], code[entry + 5]
     d, source = code[t.TWIST], base + code[entry]
     matrix, factors = base + code[t.BUFFER], base + code[t.FACTORS]
@@ -98,8 +102,11 @@ def _free_motors(w: Slots, code: Code, base: int, entry: int, stack: int, stride
     notes = base + code[t.NOTES]
     store(w, notes + t.TRAIL, larger(load(w, notes + t.TRAIL, z), trail))
     for i in range(d):
+        column = matrix + (motors + i) * m
         for r in range(rank, m):
-            store(w, stack + i * stride + r - rank, load(w, matrix + (motors + i) * m + r, z))
+            store(w, stack + i * stride + r - rank, load(w, column + r, z))
+        solved = solved_square(w, matrix, m, code, order, rank, factors, column, base + code[t.VECTOR], z)
+        store(w, notes + t.DRIVEN_COUPLING, load(w, notes + t.DRIVEN_COUPLING, z) + solved)
     return inverse_square(w, matrix, m, code, order, rank, factors, base + code[t.VECTOR], z)
 
 
@@ -123,7 +130,7 @@ def certain_ranks(w: Slots, code: Code, constants: Slots, base: int, z: Lane) ->
     driven = _joined(passive, of_rows, of_motors, z)
     locked = _joined(passive, load(w, notes + t.OBJECT_INVERSE, z), of_twist, z)
     # R^-1 B for passive joints and motors together, B the twist: through the motors it goes by their rows.
-    reduced = of_rows * load(w, notes + t.OBJECT_NORM, z)
+    reduced = load(w, notes + t.DRIVEN_COUPLING, z)
     both_ways = sqrt(of_twist) + sqrt(of_motors * reduced)
     whole = _joined(driven, load(w, notes + t.REST_INVERSE, z), fma(both_ways, both_ways, reduced), z)
     together = passive + driven + locked + whole

@@ -43,7 +43,7 @@ def _gather(w: Slots, code: Code, constants: Slots, base: int, entry: int, z: La
         if member == 1:
             member_entries(w, code, base, block, matrix + joints * m + row, m, z)
         row += code[code[t.BLOCK] + t.BLOCK_ENTRY * block + 1]
-    _note_norms(w, code, matrix, entry, row, base + code[t.NOTES], z)
+    _note_norm(w, code, matrix, entry, row, base + code[t.NOTES], z)
     columns = joints + member * code[t.TWIST]
     at = code[entry + 11]
     for _ in range(code[entry + 12]):
@@ -60,13 +60,11 @@ def _gather(w: Slots, code: Code, constants: Slots, base: int, entry: int, z: La
 
 
 @kernel
-def _note_norms(w: Slots, code: Code, matrix: int, entry: int, rows: int, notes: int, z: Lane) -> None:
-    """Add the squares of the rows of blocks to the squared norms of A and of G."""
-    m, joints = code[entry], code[entry + 1] + code[entry + 3]
-    own = _norm(w, matrix, m, rows, 0, joints, z)
-    of_object = _norm(w, matrix, m, rows, joints, joints + code[entry + 6] * code[t.TWIST], z)
-    store(w, notes + t.NORM, load(w, notes + t.NORM, z) + own + of_object)
-    store(w, notes + t.OBJECT_NORM, load(w, notes + t.OBJECT_NORM, z) + of_object)
+def _note_norm(w: Slots, code: Code, matrix: int, entry: int, rows: int, notes: int, z: Lane) -> None:
+    """Add the squares of the rows of blocks to the squared norm of A."""
+    columns = code[entry + 1] + code[entry + 3] + code[entry + 6] * code[t.TWIST]
+    own = _norm(w, matrix, code[entry], rows, 0, columns, z)
+    store(w, notes + t.NORM, load(w, notes + t.NORM, z) + own)
 
 
 @kernel

@@ -91,6 +91,23 @@ def inverse_square(
 
 
 @kernel
+def solved_square(
+    w: Slots, matrix: int, m: int, code: Code, order: int, steps: int, factors: int, column: int,
+    vector: int, z: Lane,
+) -> Lane:  # fmt: skip
+    """Squared length of the solution for one reflected column: of the inverse of the triangle times it."""
+    total = z
+    for i in range(steps - 1, -1, -1):
+        s = load(w, column + i, z)
+        for k in range(i + 1, steps):
+            s = fnma(load(w, matrix + code[order + k] * m + i, z), load(w, vector + k, z), s)
+        x = s * load(w, factors + 3 * i + 1, z)
+        store(w, vector + i, x)
+        total = fma(x, x, total)
+    return total
+
+
+@kernel
 def left_null(
     w: Slots, matrix: int, m: int, code: Code, order: int, steps: int, factors: int, row: int, vector: int,
     z: Lane,

@@ -213,8 +213,8 @@ RESIDUAL: Final = 6
 """Squared largest gap."""
 LIMB_INVERSE: Final = 7
 """Squared norm of the inverse so far in the limb at hand."""
-OBJECT_NORM: Final = 8
-"""Squared norm of G."""
+DRIVEN_COUPLING: Final = 8
+"""Sum over limbs of the squared norm of R^-1 B on the twist, R the motors' columns of the reduced rows."""
 REACHED: Final = 9
 """Squared distance of the farthest joint from the reference point."""
 MOTOR_COUPLING: Final = 10
