@@ -168,5 +168,8 @@ def _numbers(values: ArrayLike, what: str) -> NDArray[np.float64]:
 
 
 def _lanes(table: Matrix, shape: tuple[int, ...]) -> Matrix:
-    wide = np.broadcast_to(table, (*shape, table.shape[-1]))
+    if table.shape[:-1] == shape:
+        wide = table  # what is broadcast is read-only, and would be copied for the kernels
+    else:
+        wide = np.broadcast_to(table, (*shape, table.shape[-1]))
     return np.ascontiguousarray(wide).reshape(math.prod(shape), table.shape[-1])  # there may be no motors

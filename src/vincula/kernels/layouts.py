@@ -57,17 +57,14 @@ def spectra_layout(path: LanePath) -> Callable[[Any], Laid]:
 
 def _metric(path: LanePath, twin: Twin, nominal: Vector) -> list[Number]:
     """Factors of the metrics: those of the nominal mechanism in units of another characteristic length."""
-    from vincula.kernels.lanes.metrics import APART, GRADED
+    from vincula.kernels.lanes.metrics import APART
 
     layout, space = path.mechanism.layout, path.mechanism.space
     linear = [layout.columns[k].linear for k in layout.active]
     linear += [k < space.translations for k in range(space.dimension)]
     count = len(linear)
     share = path.mechanism.length / twin.length
-    sizes = 1.0 / nominal[:count]
-    motors = len(layout.active)
-    for part, most in ((slice(0, motors), GRADED), (slice(motors, None), GRADED), (slice(None), APART)):
-        _guard_spread(sizes[part], np.array(linear)[part], share, most)
+    _guard_spread(1.0 / nominal[:count], np.array(linear), share, APART)
     own: list[Number] = [x * share if flag else x for x, flag in zip(nominal, linear, strict=False)]
     return [*own, *nominal[count:]]
 

@@ -290,3 +290,19 @@ def test_motor_values_of_a_mechanism_without_motors() -> None:
         found = compiled.evaluate(np.empty((*shape, 0)), ("mobility",), given="motors", path="reference")
         assert found.shape == shape
         assert (found["mobility"] == 2).all()
+
+
+def test_what_is_given_is_left_alone(five_bar: vc.CompiledMechanism) -> None:
+    """Arrays of the caller are read where they are: never written, and frozen ones are taken too."""
+    motors = np.linspace([0.0, 0.0], [0.2, -0.1], 40)
+    closed = five_bar.evaluate(motors, ["configuration"], given="motors")["configuration"]
+    for given, numbers in (("motors", motors), ("configuration", closed)):
+        kept = numbers.copy()
+        found = five_bar.evaluate(numbers, ["kinematic.efficiencies", "configuration"], given=given)
+        np.testing.assert_array_equal(numbers, kept)
+        numbers = numbers.copy()
+        numbers.setflags(write=False)
+        again = five_bar.evaluate(numbers, ["kinematic.efficiencies", "configuration"], given=given)
+        for name in found:
+            np.testing.assert_array_equal(again[name], found[name])
+            assert not np.shares_memory(found[name], numbers)

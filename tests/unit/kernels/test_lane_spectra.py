@@ -64,6 +64,8 @@ def agrees(mechanism: Mechanism, program: LaneProgram, values: Matrix, raw: RawL
         model = mechanism.linearize(configuration(mechanism, values[i]))
         assert model.ledger.summary == program.counts
         assert model.ledger.status == "certain"
+        whole = model.ledger.decision("all")
+        assert raw.angle[i] >= whole.cutoffs["rounding"] / whole.kept  # a bound, never below the truth
         ellipsoid = vc.kinematic_ellipsoid(model, weights)
         active, passive = (
             vc.active_force_ellipsoid(model, weights),
@@ -171,7 +173,7 @@ def test_random_mechanisms_as_drawn() -> None:
     assert certain > 1.8 * prepared
 
 
-@pytest.mark.parametrize(("loops", "spatial"), [(1, False), (3, False), (40, False), (2, True), (12, True)])
+@pytest.mark.parametrize(("loops", "spatial"), [(1, False), (3, False), (40, False), (100, False), (2, True), (12, True)])
 def test_ladders(loops: int, spatial: bool, rng: np.random.Generator) -> None:
     mechanism = ladder(loops, spatial=spatial)
     values = nearby(mechanism, rng, 3, far=0.01)
@@ -245,3 +247,23 @@ def test_weights_enter(rng: np.random.Generator) -> None:
     assert agrees(mechanism, program, values, program.run(values, want=EVERYTHING)) == 4
     with pytest.raises(Unsupported):
         LaneProgram.prepare(mechanism, vc.Weights(twist=[1, 1, 1, 0, 0, 0]))
+
+
+@pytest.mark.parametrize("size", [3e-4, 2e-3, 300.0, 4000.0])
+def test_plain_weights_on_small_and_large_mechanisms(size: float, rng: np.random.Generator) -> None:
+    """Metres and radians weighed alike on grippers of millimetres: weights far apart in scaled units."""
+    points = {"o1": (0, 0), "o2": (0.3, 1), "o3": (1.1, 1.7), "o4": (1.9, 1), "o5": (2, 0)}
+    bars = ["ground", "a", "b", "c", "d", "ground"]
+    joints = [
+        vc.Revolute(name, one, two, at=size * np.array(place))
+        for (name, place), one, two in zip(points.items(), bars, bars[1:], strict=False)
+    ]
+    mechanism = Mechanism.planar(
+        joints=joints,
+        reference=vc.Reference("b", origin=size * np.array(points["o3"])),
+        active=["o1", "o5"],
+        weights=vc.Weights(),
+    )
+    values = nearby(mechanism, rng, 6)
+    program = LaneProgram.prepare(mechanism)
+    assert agrees(mechanism, program, values, program.run(values, want=EVERYTHING)) == 6

@@ -10,10 +10,9 @@ from vincula.model import LinearModel
 from vincula.numerics.metric import Metric
 from vincula.numerics.rank import EPS, rounding_unit
 
-GRADED = 100.0
-"""Weights whose roots differ by more than this on one side go through long arithmetic: not in lanes."""
 APART = 1e4
-"""Weights of the two sides whose roots differ by more than this lose digits when they are applied early."""
+"""Weights whose roots differ by more than this lose more than four digits when they are applied early: beyond
+it the reference path weighs in another order, or in long arithmetic."""
 
 
 def metric_constants(model: LinearModel, twist: Metric, rate: Metric) -> Vector:
@@ -25,20 +24,11 @@ def metric_constants(model: LinearModel, twist: Metric, rate: Metric) -> Vector:
     weights = [_weights(metric, side) for metric, side in ((rate, "rates"), (twist, "twists"))]
     factors = model.scaled.active_column, model.scaled.twist
     sizes = [np.sqrt(w) * factor for w, factor in zip(weights, factors, strict=True)]
-    for size, side in zip(sizes, ("rates", "twists"), strict=True):
-        if len(size) and size.max() > GRADED * size.min():
-            raise Unsupported(f"weights of {side} differ by more than {GRADED**2:g}")
     together = np.concatenate(sizes)
     if together.max() > APART * together.min():
-        raise Unsupported(f"weights of rates and twists differ by more than {APART**2:g}")
+        raise Unsupported(f"weights differ by more than {APART**2:g} in units of the characteristic length")
     roots = np.sqrt(np.concatenate(weights))
     return np.concatenate([1.0 / together, 1.0 / roots, roots])
-
-
-def spread(constants: Vector) -> float:
-    """How much the metrics may magnify an angle."""
-    sizes = constants[: len(constants) // 3]
-    return float(sizes.max() / sizes.min()) if len(sizes) else 1.0
 
 
 def _weights(metric: Metric, side: str) -> Vector:
