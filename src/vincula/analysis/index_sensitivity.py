@@ -14,7 +14,7 @@ import numpy as np
 
 from vincula.analysis.ellipsoid import Ellipsoid
 from vincula.analysis.indices import Part, components_of_part
-from vincula.analysis.sensitivity import CLUSTER, Sensitivities, Sensitivity, alone
+from vincula.analysis.sensitivity import CLUSTER, Semiaxis, Sensitivities, Sensitivity, alone
 from vincula.arrays import Matrix, Vector
 from vincula.numerics.lapack import svd
 
@@ -47,11 +47,11 @@ def efficiency_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: int
 
 
 def index_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: str, on: Part) -> Derivative:
-    """Derivative of an index of the kinematic ellipsoid on some components.
+    """Derivative of an index of an ellipsoid on some components.
 
     Args:
         found: The model's sensitivities.
-        ellipsoid: Its kinematic ellipsoid, viewpoint efficiency.
+        ellipsoid: One of its five, viewpoint efficiency.
         index: Name of a function in `vincula.analysis.indices`.
         on: Components.
     """
@@ -59,17 +59,20 @@ def index_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: str, on:
 
     value = float(getattr(indices, index)(ellipsoid, on))
     if "infinite" in ellipsoid.classes:
-        return Derivative(value, None, "the ellipsoid is unbounded: the member moves with all motors locked")
-    axes = _SquaredAxes.of(found, ellipsoid, on)
+        return Derivative(value, None, _UNBOUNDED.get(ellipsoid.kind, "the ellipsoid is unbounded"))
+    if ellipsoid.kind != "kinematic" and found.model.ledger.summary.structural_wrenches > 0:
+        return Derivative(value, None, _BESIDE_STRUCTURAL)
+    axes = _SquaredAxes.of(ellipsoid, on)
     if axes is None:
         return Derivative(
             value, None, "the ellipsoid is flat in these components: the index has a kink or none"
         )
     slopes = _SLOPES[index](axes.values, value)
-    used = np.flatnonzero(slopes)
-    if index not in _SYMMETRIC and not all(axes.alone(int(k)) for k in used):
+    # Over one component the extremes are one and the same: the index is constant.
+    used = np.flatnonzero(slopes) if slopes.any() else np.zeros(1, dtype=np.intp)
+    if slopes.any() and index not in _SYMMETRIC and not all(axes.alone(int(k)) for k in used):
         return Derivative(value, None, "the extreme semi-axis is one of several equal ones: no derivative")
-    total = [axes.sensitivity(found, int(k)).times(float(slopes[k])) for k in used]
+    total = [axes.sensitivity(found, ellipsoid, int(k)).times(float(slopes[k])) for k in used]
     result = total[0]
     for more in total[1:]:
         result = result + more
@@ -78,49 +81,50 @@ def index_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: str, on:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _SquaredAxes:
-    """Squared semi-axes of a shadow, descending, with the motions that reach them (scaled)."""
+    """Squared semi-axes of a shadow, descending, with the pairs that reach them (physical).
+
+    Attributes:
+        values: The squares.
+        motors: Motor sides of cost one, one a column.
+        tasks: Their task sides.
+        chosen: 1 for components that the shadow is cast on, 0 for the others.
+    """
 
     values: Vector
-    rates: Matrix
-    twists: Matrix
-    on_twist: Matrix
-    on_rate: Matrix
+    motors: Matrix
+    tasks: Matrix
+    chosen: Vector
 
     @staticmethod
-    def of(found: Sensitivities, ellipsoid: Ellipsoid, on: Part) -> _SquaredAxes | None:
+    def of(ellipsoid: Ellipsoid, on: Part) -> _SquaredAxes | None:
         """The axes, or None for a shadow that is flat."""
-        model = found.model
-        scaled = model.scaled
-        motions, _ = model.ledger.subspaces.motions_and_equilibria
-        n_a = len(model.motors)
-        rates, twists = motions[:n_a], motions[n_a:]
-        paid = ellipsoid.motor_weight.factor @ (scaled.active_column[:, None] * rates)
+        finite = [k for k, name in enumerate(ellipsoid.classes) if name == "finite"]
         chosen = components_of_part(ellipsoid, on)
         factor = ellipsoid.task_weight.factor[:, chosen]
         count = int(svd(factor)[1].size)
-        reached = factor @ (scaled.twist[chosen, None] * twists[chosen])
-        # Motions of unit cost: paid @ unit is orthonormal.
-        unit = np.linalg.inv(np.linalg.qr(paid)[1])
-        if ellipsoid.set.project(chosen).axes.shape[1] < count:
+        if not finite or ellipsoid.set.project(chosen).axes.shape[1] < count:
             return None
-        _, lengths, right = svd(reached @ unit)
-        lengths, basis = lengths[:count], unit @ right[:, :count]
-        weight = np.zeros((len(twists), len(twists)))
-        weight[np.ix_(chosen, chosen)] = factor.T @ factor
-        on_twist = 2.0 * scaled.twist[:, None] * (weight @ (scaled.twist[:, None] * (twists @ basis)))
-        cost = ellipsoid.motor_weight.matrix @ (scaled.active_column[:, None] * (rates @ basis))
-        squares = lengths**2
-        on_rate = -2.0 * squares * (scaled.active_column[:, None] * cost)
-        return _SquaredAxes(squares, rates @ basis, twists @ basis, on_twist, on_rate)
+        # Pairs of cost one, orthogonal in the metric of the motors; what moves nothing casts no shadow.
+        motors = np.array([ellipsoid.motor_directions[k] for k in finite], dtype=float).T
+        tasks = np.array([ellipsoid.task_directions[k] for k in finite], dtype=float).T
+        tasks = tasks * np.sqrt(ellipsoid.efficiencies[finite])
+        _, lengths, right = svd(factor @ tasks[chosen])
+        mask = np.zeros(len(tasks))
+        mask[chosen] = 1.0
+        basis = right[:, :count]
+        return _SquaredAxes(lengths[:count] ** 2, motors @ basis, tasks @ basis, mask)
 
     def alone(self, k: int) -> bool:
         """Whether one of them is apart from all others."""
         near = np.abs(self.values - self.values[k]) <= 2.0 * CLUSTER * self.values[k]
         return int(np.count_nonzero(near)) == 1
 
-    def sensitivity(self, found: Sensitivities, k: int) -> Sensitivity:
+    def sensitivity(self, found: Sensitivities, ellipsoid: Ellipsoid, k: int) -> Sensitivity:
         """Derivative of one of them."""
-        return found.of_motion(self.rates[:, k], self.twists[:, k], self.on_twist[:, k], self.on_rate[:, k])
+        axis = Semiaxis(
+            ellipsoid.kind, float(self.values[k]), self.tasks[:, k], self.motors[:, k], self.chosen
+        )
+        return found.semiaxis(ellipsoid, axis)
 
 
 def _volume(squares: Vector, value: float) -> Vector:
@@ -156,4 +160,12 @@ _SLOPES: dict[str, Callable[[Vector, float], Vector]] = {
     "condition_number": _condition,
     "inverse_condition_number": _inverse_condition,
 }
+_UNBOUNDED = {
+    "kinematic": "the ellipsoid is unbounded: the member moves with all motors locked",
+    "passive force": "the ellipsoid is unbounded: some wrenches are carried without motors",
+}
+_BESIDE_STRUCTURAL = (
+    "some wrenches are carried without motors: the set lies beside them, and how its shadow turns with them "
+    "is not known here"
+)
 _SYMMETRIC = ("yoshikawa_volume", "isotropy")

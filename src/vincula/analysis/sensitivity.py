@@ -14,7 +14,7 @@ Everything is in the scaled coordinates of `LinearModel.scaled`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -33,16 +33,41 @@ CONSTANT_RANK = 1e-7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Weighing:
+    """How one number depends on the metrics: sum of shares (t^T W_t t - costs s^T W_m s), t and s held.
+
+    Attributes:
+        tasks: t x i task sides, physical.
+        motors: r x i motor sides, physical.
+        shares: i factors.
+        costs: i factors.
+    """
+
+    tasks: Matrix
+    motors: Matrix
+    shares: Vector
+    costs: Vector
+
+    def along(self, task: Matrix, motor: Matrix) -> float:
+        """The derivative for rates of change of both metrics."""
+        of_tasks = np.einsum("ai,ab,bi->i", self.tasks, task, self.tasks)
+        of_motors = np.einsum("ai,ab,bi->i", self.motors, motor, self.motors)
+        return float(self.shares @ (of_tasks - self.costs * of_motors))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Sensitivity:
     """The derivative of one number with respect to the matrix A, as a sum of dyads: -y^T dA k.
 
     Attributes:
         forces: m x j, the vectors y.
         motions: columns x j, the vectors k, ordered (q_a, q_p, u).
+        weighing: How the number depends on the metrics.
     """
 
     forces: Matrix
     motions: Matrix
+    weighing: Weighing
 
     def along(self, rate: Matrix) -> float:
         """The derivative for a rate of change of A = [J_a J_p -G^T], in scaled coordinates."""
@@ -50,10 +75,43 @@ class Sensitivity:
 
     def times(self, factor: float) -> Sensitivity:
         """The same with a factor."""
-        return Sensitivity(self.forces * factor, self.motions)
+        return Sensitivity(
+            self.forces * factor,
+            self.motions,
+            replace(self.weighing, shares=self.weighing.shares * factor),
+        )
 
     def __add__(self, other: Sensitivity) -> Sensitivity:
-        return Sensitivity(np.hstack([self.forces, other.forces]), np.hstack([self.motions, other.motions]))
+        one, two = self.weighing, other.weighing
+        return Sensitivity(
+            np.hstack([self.forces, other.forces]),
+            np.hstack([self.motions, other.motions]),
+            Weighing(
+                np.hstack([one.tasks, two.tasks]),
+                np.hstack([one.motors, two.motors]),
+                np.concatenate([one.shares, two.shares]),
+                np.concatenate([one.costs, two.costs]),
+            ),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Semiaxis:
+    """A stationary value of task^T W_t task / motor^T W_m motor over some components of the task.
+
+    Attributes:
+        kind: The ellipsoid it belongs to.
+        square: The value.
+        task: Task side, physical, of a motor side of cost one.
+        motor: Motor side, physical, of cost one.
+        chosen: 1 for components of the task that count, 0 for the others.
+    """
+
+    kind: str
+    square: float
+    task: Vector
+    motor: Vector
+    chosen: Vector
 
 
 class Sensitivities:
@@ -86,6 +144,15 @@ class Sensitivities:
         size = float(np.linalg.norm(rate))
         return rest.size == 0 or float(np.linalg.norm(rest)) <= CONSTANT_RANK * size
 
+    def closing(self, opening: Vector) -> tuple[Vector, Vector]:
+        """The shortest motion whose rates of gaps are the negative of some, and what stays open.
+
+        Args:
+            opening: Rates at which the rows of A open, scaled.
+        """
+        motion = -(self._inverse @ opening)
+        return motion, np.asarray(opening + self._ledger.matrix("all") @ motion)
+
     def efficiency(self, ellipsoid: Ellipsoid, index: int) -> Sensitivity:
         """The derivative of one finite efficiency of an ellipsoid of this model.
 
@@ -94,34 +161,34 @@ class Sensitivities:
             index: Position in its list; the class there must be finite.
         """
         value = float(ellipsoid.efficiencies[index])
-        task = np.asarray(ellipsoid.task_directions[index], dtype=float)
+        task = math.sqrt(value) * np.asarray(ellipsoid.task_directions[index], dtype=float)
         motor = np.asarray(ellipsoid.motor_directions[index], dtype=float)
-        root = math.sqrt(value)
-        weigh_task = ellipsoid.task_weight.matrix
-        weigh_motor = ellipsoid.motor_weight.matrix
-        t, m = self._factors(ellipsoid)
-        return self._of_pair(
-            ellipsoid.kind,
-            root * task / t,
-            motor / m,
-            2.0 * root * t * (weigh_task @ task),
-            -2.0 * value * m * (weigh_motor @ motor),
-        )
+        return self.semiaxis(ellipsoid, Semiaxis(ellipsoid.kind, value, task, motor, np.ones(len(task))))
 
-    def of_motion(self, rates: Vector, twist: Vector, on_twist: Vector, on_rates: Vector) -> Sensitivity:
-        """Derivative of a stationary function of one motion (q_a, u).
+    def semiaxis(self, ellipsoid: Ellipsoid, axis: Semiaxis) -> Sensitivity:
+        """The derivative of one squared semi-axis of an ellipsoid of this model, or of a shadow of it.
 
         Args:
-            rates: Motor rates, scaled.
-            twist: Twist, scaled.
-            on_twist: Derivative of the function by the twist.
-            on_rates: Derivative of the function by the rates.
+            ellipsoid: The ellipsoid.
+            axis: The semi-axis.
         """
-        return self._of_pair("kinematic", twist, rates, on_twist, on_rates)
+        weigh_task, weigh_motor = ellipsoid.task_weight.matrix, ellipsoid.motor_weight.matrix
+        t, m = self._factors(ellipsoid)
+        seen = axis.chosen * axis.task
+        forces, motions = self._of_pair(
+            axis.kind,
+            axis.task / t,
+            axis.motor / m,
+            2.0 * t * axis.chosen * (weigh_task @ seen),
+            -2.0 * axis.square * m * (weigh_motor @ axis.motor),
+        )
+        weighing = Weighing(seen[:, None], axis.motor[:, None], np.ones(1), np.array([axis.square]))
+        return Sensitivity(forces, motions, weighing)
 
     def _of_pair(
         self, kind: str, task: Vector, motor: Vector, on_task: Vector, on_motor: Vector
-    ) -> Sensitivity:
+    ) -> tuple[Matrix, Matrix]:
+        """Forces and motions of the derivative by A, of a stationary function of a pair."""
         if kind == "internal force":
             return self._of_internal(task, on_task, on_motor)
         pair, on_pair = np.concatenate([motor, task]), np.concatenate([on_motor, on_task])
@@ -130,15 +197,15 @@ class Sensitivities:
         else:
             # An equilibrium e is orthogonal to every motion: de = -N^+T dN^T e.
             motion, force = self._lifted(on_pair), -self._pulled(pair)
-        return Sensitivity(force[:, None], motion[:, None])
+        return force[:, None], motion[:, None]
 
-    def _of_internal(self, force: Vector, on_force: Vector, on_torque: Vector) -> Sensitivity:
+    def _of_internal(self, force: Vector, on_force: Vector, on_torque: Vector) -> tuple[Matrix, Matrix]:
         """f in the left kernel of B = [J_p -G^T], tau = -J_a^T f: eqs. (22)-(23)."""
         held = self._ledger.matrix("passive+member")
         rank = self._ledger.rank("passive+member")
         pull = on_force - self.model.scaled.active @ on_torque
         rest = _pseudo_inverse(held, rank) @ pull
-        return Sensitivity(force[:, None], np.concatenate([on_torque, rest])[:, None])
+        return force[:, None], np.concatenate([on_torque, rest])[:, None]
 
     @cached_property
     def _decomposed(self) -> tuple[Matrix, Vector, Matrix]:

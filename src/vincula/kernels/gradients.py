@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from inspect import signature
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,14 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from vincula.analysis.ellipsoid import Ellipsoid
 from vincula.analysis.index_sensitivity import Derivative, efficiency_derivative, index_derivative
-from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights
+from vincula.analysis.recipes import (
+    ellipsoid_of_kind,
+    motor_quantity,
+    resolved_weights,
+    task_quantity,
+)
 from vincula.analysis.sensitivity import Sensitivities
 from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, ModelError, UnknownNameError, VinculaError, listing
+from vincula.kernels.dimensions import Dimensions, dimensions_at
 from vincula.kernels.inputs import batch_of
 from vincula.kernels.quantities import Quantity
 from vincula.kernels.tangents import Direction, Tangents
-from vincula.kernels.variants import Builder
 from vincula.mechanism.mechanism import Mechanism
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import decide_rank
@@ -85,8 +89,8 @@ def gradient(
     Args:
         compiled: The mechanism.
         configurations: (..., numbers) joint values in the order of `coordinates`; None for home.
-        quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, or an index of the kinematic one,
-            such as `kinematic.condition:translation`.
+        quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, or an index of it, such as
+            `kinematic.condition:translation`.
         wrt: `motors`, `joints`, or names of parameters.
         parameters: Values of parameters, one a lane.
 
@@ -159,39 +163,17 @@ def _at(
             return [(d, _Slope(np.full(len(names), np.nan), "a rank is doubtful here")) for d in derivatives]
         if wrt == "joints":
             return [(d, _by_joints(mechanism, tangents, d, names)) for d in derivatives]
-        directions = (
-            tangents.of_motors() if wrt == "motors" else _parameters(compiled, tangents, names, settings)
-        )
-        return [(d, _by_directions(d, directions)) for d in derivatives]
+        if wrt == "motors":
+            directions = tangents.of_motors()
+            return [(d, _by_directions(d, directions)) for d in derivatives]
+        dimensions = dimensions_at(compiled.variants, compiled.weights, names, settings)
+        directions = tangents.of_parameters(dimensions.placements)
+        weights = _weight_rates(dimensions, asked)
+        return [(d, _with_weights(_by_directions(d, directions), d, weights)) for d in derivatives]
     except ClosureError as error:
         return str(error)
     except VinculaError as error:
         return f"{type(error).__name__}: {error}"
-
-
-def _parameters(
-    compiled: CompiledMechanism, tangents: Tangents, names: Sequence[str], settings: Mapping[str, float]
-) -> list[Direction]:
-    at = {**_defaults(compiled.build), **settings}
-    missing = [name for name in names if name not in at]
-    if missing:
-        raise ModelError(f"parameters {listing(missing)} have no default: give their values in parameters")
-
-    def varied(values: Mapping[str, float]) -> Mechanism:
-        found = compiled.variants.at(values)
-        if isinstance(found, str):
-            raise ModelError(found)
-        return found
-
-    return [tangents.of_parameter(varied, at, name) for name in names]
-
-
-def _defaults(build: Builder | None) -> dict[str, float]:
-    """Default values of the parameters of a builder."""
-    if build is None:
-        return {}
-    found = signature(build).parameters.values()
-    return {p.name: float(p.default) for p in found if isinstance(p.default, (int, float))}
 
 
 def _derivatives(found: Sensitivities, compiled: CompiledMechanism, asked: Quantity) -> list[Derivative]:
@@ -227,6 +209,22 @@ def _by_directions(derivative: Derivative, directions: Sequence[Direction]) -> _
     return _Slope(slopes, reasons[0] if reasons else "")
 
 
+def _weight_rates(dimensions: Dimensions, asked: Quantity) -> list[tuple[Matrix, Matrix]]:
+    """Rates of the metrics of both sides by every parameter; empty where the weights stay."""
+    if asked.kind is None:
+        return []
+    sides = [dimensions.weight_rates(q) for q in (task_quantity(asked.kind), motor_quantity(asked.kind))]
+    return [] if sides[0] is None or sides[1] is None else list(zip(sides[0], sides[1], strict=True))
+
+
+def _with_weights(slope: _Slope, derivative: Derivative, rates: Sequence[tuple[Matrix, Matrix]]) -> _Slope:
+    """Derivatives by parameters that weights depend on too."""
+    if derivative.sensitivity is None or not rates:
+        return slope
+    weighing = derivative.sensitivity.weighing
+    return _Slope(slope.values + [weighing.along(*rate) for rate in rates], slope.reason)
+
+
 def _by_joints(
     mechanism: Mechanism, tangents: Tangents, derivative: Derivative, names: Sequence[str]
 ) -> _Slope:
@@ -252,9 +250,9 @@ def _asked(compiled: CompiledMechanism, name: str) -> Quantity:
         raise UnknownNameError("quantity", str(name), known)
     found = known[name]
     of_efficiencies = found.part in ("efficiencies", "smallest", "largest")
-    if found.kind is None or not (of_efficiencies or (found.kind == "kinematic" and found.part in SMOOTH)):
+    if found.kind is None or not (of_efficiencies or found.part in SMOOTH):
         able = ["<ellipsoid>.efficiencies", "<ellipsoid>.smallest", "<ellipsoid>.largest"]
-        able += [f"kinematic.{index}" for index in SMOOTH]
+        able += [f"<ellipsoid>.{index}" for index in SMOOTH]
         raise ModelError(f"{name} has no derivatives here: choose {listing(able)}")
     return found
 

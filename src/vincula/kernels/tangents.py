@@ -6,27 +6,28 @@ closed again with the motors where they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from vincula.analysis.sensitivity import Sensitivities
 from vincula.arrays import Matrix, Vector
-from vincula.mechanism.closure_solver import minimum_norm
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.holding import held_columns, holding, problem_for
+from vincula.mechanism.many_frames import crossed
+from vincula.mechanism.many_matrices import ManyMatrices
 from vincula.mechanism.mechanism import Mechanism
-from vincula.mechanism.modes import motors_at
-from vincula.mechanism.second_order import MatrixDerivative
+from vincula.mechanism.placement_rates import PlacementRates
+from vincula.mechanism.redrawn import Redrawn
+from vincula.mechanism.second_order import FrameMotion, MatrixDerivative
 from vincula.model import LinearModel
 from vincula.numerics.lapack import svd
 from vincula.numerics.rank import decide_rank
 
-Varied = Callable[[Mapping[str, float]], Mechanism]
-"""The mechanism at other values of its parameters."""
-STEP = 2e-5
-"""Relative step of a dimension: the loops stay closed to its square, well within what counts as closed."""
+CLOSES: Final = 1e-7
+"""How far loops may stay open, or motors have to move, beside what a parameter moves at all."""
+LOOSE: Final = "the member moves with all motors locked: motor positions do not say where it goes"
+NO_CLOSING: Final = "the loops do not close again with the motors held: this parameter has no derivative"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +60,7 @@ class Tangents:
         self._derivative = MatrixDerivative(mechanism, q)
         scaled = model.scaled
         factors = np.concatenate([scaled.active_column, scaled.passive_column, scaled.twist])
+        self._factors: Vector = factors
         self.motions: Matrix = factors[:, None] * found.kernel
 
     def of_motors(self) -> list[Direction]:
@@ -68,8 +70,7 @@ class Tangents:
         left, values, right = svd(motors)
         rank = decide_rank(motors, name="motor rates that are possible").rank
         if rank < self.motions.shape[1] - max(0, self.model.ledger.summary.passive_redundancy):
-            words = "the member moves with all motors locked: motor positions do not say where it goes"
-            return [Direction(None, words)] * n_a
+            return [Direction(None, LOOSE)] * n_a
         directions = []
         for k in range(n_a):
             wanted = np.eye(n_a)[k]
@@ -89,54 +90,67 @@ class Tangents:
     def along(self, motion: Vector) -> Direction:
         """The direction of one motion (q_a, q_p, u) [m/s, rad/s]."""
         layout = self._derivative.layout
-        n_a, n_p = len(self.model.motors), len(self.model.passives)
-        rates = np.zeros(n_a + n_p)
-        rates[layout.active], rates[layout.passive] = motion[:n_a], motion[n_a : n_a + n_p]
-        jacobian, member = self._derivative.along(rates, self._in_ground_axes(motion[n_a + n_p :]))
+        jacobian, member = self._derivative.along(*self._parted(motion))
         return self._checked(
             self.found.scaled_rate(jacobian[:, layout.active], jacobian[:, layout.passive], member)
         )
 
-    def of_parameter(
-        self, build: Callable[[Mapping[str, float]], Mechanism], at: Mapping[str, float], name: str
-    ) -> Direction:
-        """The direction of one declared parameter, the loops closing again with the motors held.
-
-        The way of the joints comes from the closure equations; the matrices are then compared a little
-        to both sides along it (two steps, extrapolated: about 1e-10 relative).
+    def of_parameters(self, rates: PlacementRates) -> list[Direction]:
+        """One direction a parameter: the loops close again, the motors stay where they are.
 
         Args:
-            build: Makes the variants.
-            at: Values of all parameters here [m, rad].
-            name: The one that changes.
+            rates: How the numbers of the mechanism change.
         """
-        held = holding(self.mechanism, motors_at(self.mechanism, self.q))
-        problem = problem_for(self.mechanism, held)
-        free = ~held_columns(problem, held)
-        state = problem.start(self.q)
-        size = STEP * max(abs(at[name]), min(1.0, self.mechanism.length))
+        if self.model.ledger.summary.indeterminacy > 0:
+            return [Direction(None, LOOSE)] * len(rates.turn)
+        many = ManyMatrices(self.mechanism, self.q.flat[None])
+        redrawn = Redrawn(many, rates)
+        return [self._redrawn(redrawn, place) for place in range(len(rates.turn))]
 
-        def varied(step: float) -> Mechanism:
-            return build({**at, name: at[name] + step})
+    def _redrawn(self, redrawn: Redrawn, place: int) -> Direction:
+        """The direction of one parameter: frames move in their bodies, and the mechanism after them."""
+        many, layout = redrawn.many, self._derivative.layout
+        scaled = self.model.scaled
+        frames, point = redrawn.frames[0, place], redrawn.point[0, place]
+        size = float(np.linalg.norm(frames)) + float(np.linalg.norm(redrawn.opening[0, place]))
+        closing = self._closing(scaled.row * redrawn.opening[0, place], size)
+        if closing is None or float(np.abs(redrawn.rigid[0, place]).max(initial=0.0)) > CLOSES * size:
+            return Direction(None, NO_CLOSING)
+        rates, twist = self._parted(closing)
+        s = len(self._derivative.origin)
+        moving = self._derivative.frame_motion(rates, twist)
+        arm = many.frames.position[0] - many.frames.origin[0]
+        velocity = frames[:, :3] + crossed(frames[:, 3:], arm)
+        moving = FrameMotion(moving.turn + frames[:, -len(twist) + s :], moving.velocity + velocity[:, :s])
+        jacobian, member = self._derivative.of_frames(moving, twist[:s] + point[:s], twist[s:], rates)
+        more, on_member = _beside_frames(redrawn, place)
+        jacobian, member = jacobian + more, member + on_member
+        return self._checked(
+            self.found.scaled_rate(jacobian[:, layout.active], jacobian[:, layout.passive], member)
+        )
 
-        def gaps(step: float) -> Vector:
-            return problem_for(varied(step), held).gaps(state)
+    def _closing(self, opening: Vector, size: float) -> Vector | None:
+        """The motion [m/s, rad/s] that closes gaps of the rows again, motors standing; None if none does."""
+        n_a = len(self.model.motors)
+        shortest, left_open = self.found.closing(opening)
+        if not float(np.linalg.norm(left_open)) <= CLOSES * size:
+            return None
+        motors = self.found.kernel[:n_a]
+        rank = decide_rank(motors, name="motor rates that are possible").rank
+        left, values, right = svd(motors)
+        back = right[:, :rank] @ ((left[:, :rank].T @ shortest[:n_a]) / values[:rank])
+        motion = shortest - self.found.kernel @ back
+        if not float(np.linalg.norm(motion[:n_a])) <= CLOSES * size:
+            return None
+        return self._factors * motion
 
-        opening = (8.0 * (gaps(size) - gaps(-size)) - (gaps(2 * size) - gaps(-2 * size))) / (12.0 * size)
-        follow = np.zeros(problem.columns)
-        follow[free] = minimum_norm(problem.equations(state).jacobian[:, free], -opening)
-
-        def matrices(step: float) -> tuple[Matrix, Matrix, Matrix]:
-            mechanism = varied(step)
-            there = problem_for(mechanism, held)
-            moved = there.configuration(there.variables.moved(state, step * follow), self.q)
-            model = mechanism.linearize(moved)
-            return model.jacobian_active, model.jacobian_passive, model.grasp.T
-
-        near = _slopes(matrices(size / 2), matrices(-size / 2), size)
-        far = _slopes(matrices(size), matrices(-size), 2 * size)
-        better = [(4.0 * one - other) / 3.0 for one, other in zip(near, far, strict=True)]
-        return self._checked(self.found.scaled_rate(*better))
+    def _parted(self, motion: Vector) -> tuple[Vector, Vector]:
+        """Rates in the order of the layout, and the twist of the member in ground axes."""
+        layout = self._derivative.layout
+        n_a, n_p = len(self.model.motors), len(self.model.passives)
+        rates = np.zeros(n_a + n_p)
+        rates[layout.active], rates[layout.passive] = motion[:n_a], motion[n_a : n_a + n_p]
+        return rates, self._in_ground_axes(motion[n_a + n_p :])
 
     def _in_ground_axes(self, twist: Vector) -> Vector:
         reference = self.mechanism.reference
@@ -153,7 +167,18 @@ class Tangents:
         return Direction(rate)
 
 
-def _slopes(
-    plus: tuple[Matrix, Matrix, Matrix], minus: tuple[Matrix, Matrix, Matrix], between: float
-) -> list[Matrix]:
-    return [(one - other) / between for one, other in zip(plus, minus, strict=True)]
+def _beside_frames(redrawn: Redrawn, place: int) -> tuple[Matrix, Matrix]:
+    """Rates of J (layout's columns) and G^T by what no frame carries: leads, second axes, couplings."""
+    many = redrawn.many
+    layout, geometric = many.layout, len(many.layout.signs)
+    jacobian = np.zeros((len(layout.rows), len(layout.columns)))
+    member = np.zeros((1, len(layout.rows), 6))
+    if redrawn.screws is not None:
+        jacobian[:geometric] += (many.blocked[0] @ redrawn.screws[0, place].T) * layout.signs
+    if redrawn.blocked is not None:
+        rows = redrawn.blocked[0, place]
+        jacobian[:geometric] += (rows @ many.screws[0].T) * layout.signs
+        member[0, :geometric] = layout.carried[:, None] * rows
+    if redrawn.constant is not None:
+        jacobian[geometric:] += redrawn.constant[0, place]
+    return jacobian, many.in_own_axes(member)[0]

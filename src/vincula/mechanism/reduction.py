@@ -92,7 +92,7 @@ def reduce_graph(mechanism: Mechanism) -> Reduction:
     forest = _Forest(mechanism, joints, cluster, ground, member)
     tree = forest.tree
     rigid_loops = [
-        j for j in mechanism.all_joints if cluster[j.first] == cluster[j.second] and not _merges(mechanism, j)
+        j for j in mechanism.all_joints if cluster[j.first] == cluster[j.second] and not merges(mechanism, j)
     ]
     cuts = [_cut(mechanism, j, forest, member) for j in (*joints, *rigid_loops) if j.name not in tree]
     _check_cuts(reference.cuts, [c.joint.name for c in cuts], mechanism)
@@ -126,7 +126,7 @@ def _notes(mechanism: Mechanism, skipped: set[str]) -> Iterable[str]:
             )
 
 
-def _merges(mechanism: Mechanism, joint: Joint) -> bool:
+def merges(mechanism: Mechanism, joint: Joint) -> bool:
     """Whether a joint makes its two bodies one: fixed, not a closure, not asked to be cut."""
     cuts = mechanism.reference.cuts if mechanism.reference else {}
     return joint.type == "fixed" and not joint.closure and joint.name not in cuts and joint.cut is None
@@ -142,7 +142,7 @@ def _clusters(mechanism: Mechanism) -> dict[str, str]:
         return name
 
     for joint in mechanism.joints:
-        if _merges(mechanism, joint):
+        if merges(mechanism, joint):
             one, two = root(joint.first), root(joint.second)
             keep, drop = (two, one) if two == GROUND else (one, two)
             parent[drop] = keep

@@ -61,7 +61,7 @@ class MatrixDerivative:
         self.twists = screw_matrix(self.layout.screws, self._frames, self.origin)
         self._blocked = blocked_matrix(self.layout.blocked, self._frames, self.origin)
         self._member_pose = _member_pose(mechanism, poses)
-        self._group_of_frame = _groups_of_frames(mechanism, self.layout)
+        self._group_of_frame = groups_of_frames(mechanism, self.layout)
 
     def frame_motion(self, rates: Vector, twist: Vector) -> FrameMotion:
         """Velocities of the frames for rates of the columns (layout order) and a twist of the member.
@@ -152,7 +152,7 @@ def _member_pose(mechanism: Mechanism, poses: dict[str, Pose]) -> Pose | None:
     return poses[reference.body] if reference is not None and reference.axes == "body" else None
 
 
-def _groups_of_frames(mechanism: Mechanism, layout: Layout) -> Indices:
+def groups_of_frames(mechanism: Mechanism, layout: Layout) -> Indices:
     """For every frame, the index of the rigid group of bodies that carries it."""
     group = {body: k for k, bodies in enumerate(mechanism.reduction.clusters.values()) for body in bodies}
     of_body = np.array([group[name] for name in layout.frames.bodies], dtype=np.intp)

@@ -26,6 +26,10 @@ QUANTITIES = [
     "kinematic.inverse_condition_number:translation",
     "kinematic.isotropy:translation",
     "kinematic.smallest_singular_value:rotation",
+    "active_force.yoshikawa_volume:translation",
+    "passive_force.isotropy:rotation",
+    "dual_force.condition:translation",
+    "internal_force.efficiencies",
 ]
 DRIVEN = [
     "five-bar",
