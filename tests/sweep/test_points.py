@@ -11,20 +11,11 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import vincula as vc
-from vincula.sweep.chunks import MOST_CHUNKS, Chunking, near_walk, walk
+from vincula.sweep.chunks import MOST_CHUNKS, Chunking, near_walk
 from vincula.sweep.fingerprint import fingerprint
 from vincula.sweep.rotations import from_roll_pitch_yaw, roll_pitch_yaw
 
 shapes = st.lists(st.integers(1, 7), min_size=1, max_size=4).map(tuple)
-
-
-@given(shapes)
-def test_a_walk_visits_every_point_in_single_steps(extent: tuple[int, ...]) -> None:
-    order = walk(extent)
-    assert sorted(order) == list(range(int(np.prod(extent))))
-    places = np.stack(np.unravel_index(order, extent), axis=-1)
-    assert (np.abs(np.diff(places, axis=0)).sum(axis=1) == 1).all()
-    assert not places[0].any()
 
 
 @given(shapes, st.data())

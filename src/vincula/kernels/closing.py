@@ -24,8 +24,9 @@ class Chain:
     """The starts of a batch: fixed by the batch alone, whatever computes it.
 
     With one start (or none: home) a lane starts where the lane before it along the last axis closed, the
-    first of every stretch at the start.  A lane that did not close is passed over.  With a start a lane
-    every lane is on its own.
+    first of every row where the first of the row before did, and so on; where dimensions of the mechanism
+    differ from lane to lane and no start is given, every row at home.  A lane that did not close is passed
+    over.  With a start a lane every lane is on its own.
 
     Args:
         batch: The batch.
@@ -33,27 +34,43 @@ class Chain:
 
     def __init__(self, batch: Batch) -> None:
         self._batch = batch
-        self._last: Configuration | None = None
+        self._last: dict[int, Configuration] = {}
         self._problem: ClosureProblem | None = None
 
     def closed(self, mechanism: Mechanism, lane: int) -> Found | Outcome:
         """The closed configuration of the next lane, or why there is none; lanes come in order."""
-        batch = self._batch
-        if lane % max(batch.stretch, 1) == 0:
-            self._last = None
+        batch, level = self._batch, self._level(lane)
+        if level:
+            self._begin_row(level)
         if batch.values is None:
             return Outcome(FAILED, "nothing is given to close for")
         try:
             held = held_for(mechanism, batch.given, batch.values[lane])
             found = closed_with(
-                self._equations(mechanism, held), held, self._near(mechanism, lane), attempts=1
+                self._equations(mechanism, held), held, self._near(mechanism, lane, level), attempts=1
             )
         except ClosureError as error:
             return Outcome(NO_CLOSURE, str(error))
         except VinculaError as error:
             return Outcome(FAILED, str(error))
-        self._last = found.values
+        self._last.update(dict.fromkeys(range(level + 1), found.values))
         return found
+
+    def _begin_row(self, level: int) -> None:
+        """Forget the end of the row before: this one begins where the row before began."""
+        batch = self._batch
+        near = None if batch.parameters and batch.first is None else self._last.get(level)
+        self._last = {} if near is None else {**self._last, **dict.fromkeys(range(level), near)}
+
+    def _level(self, lane: int) -> int:
+        """Along how many of the last axes a lane is the first: it begins a row, a plane, and so on."""
+        level = 0
+        for size in reversed(self._batch.shape):
+            lane, place = divmod(lane, size)
+            if place:
+                break
+            level += 1
+        return level
 
     def _equations(self, mechanism: Mechanism, held: Holding) -> ClosureProblem:
         """The equations, made once a mechanism: what is held is the same in every lane."""
@@ -61,12 +78,12 @@ class Chain:
             self._problem = problem_for(mechanism, held)
         return self._problem
 
-    def _near(self, mechanism: Mechanism, lane: int) -> Configuration:
+    def _near(self, mechanism: Mechanism, lane: int, level: int) -> Configuration:
         batch = self._batch
         if batch.starts is not None:
             return mechanism.home.from_flat(batch.starts[lane])
-        if self._last is not None:
-            return self._last
+        if level in self._last:
+            return self._last[level]
         return mechanism.home if batch.first is None else mechanism.home.from_flat(batch.first)
 
 

@@ -28,8 +28,7 @@ class Batch:
         given: What the values are.
         values: lanes x numbers; None for the home configuration of every lane.
         starts: lanes x coordinates, where closing starts in every lane; None when lanes follow each other.
-        first: Where the first lane of every stretch starts; None for home.
-        stretch: Lanes that follow each other: the length of the last dimension.
+        first: Where the first lane starts; None for home.
         parameters: Values a lane, by name.
         alike: Whether lanes with other ranks than usual may be computed together.
     """
@@ -39,7 +38,6 @@ class Batch:
     values: Matrix | None
     starts: Matrix | None
     first: Vector | None
-    stretch: int
     parameters: Mapping[str, Vector]
     alike: bool = False
 
@@ -57,7 +55,6 @@ class Batch:
             values=None if self.values is None else self.values[part],
             starts=None if self.starts is None else self.starts[part],
             first=self.first,
-            stretch=1,
             parameters={name: values[part] for name, values in self.parameters.items()},
         )
 
@@ -135,7 +132,6 @@ def batch_of(
         values=None if rows is None else _lanes(rows, shape),
         starts=own,
         first=starts if own is None else None,
-        stretch=shape[-1] if shape else 1,
         parameters={name: np.broadcast_to(value, shape).reshape(-1) for name, value in per_lane.items()},
     )
 
@@ -168,8 +164,6 @@ def _numbers(values: ArrayLike, what: str) -> NDArray[np.float64]:
 
 
 def _lanes(table: Matrix, shape: tuple[int, ...]) -> Matrix:
-    if table.shape[:-1] == shape:
-        wide = table  # what is broadcast is read-only, and would be copied for the kernels
-    else:
-        wide = np.broadcast_to(table, (*shape, table.shape[-1]))
-    return np.ascontiguousarray(wide).reshape(math.prod(shape), table.shape[-1])  # there may be no motors
+    if table.shape[:-1] != shape:  # what is broadcast is read-only, and would be copied for the kernels
+        table = np.broadcast_to(table, (*shape, table.shape[-1]))
+    return np.ascontiguousarray(table).reshape(math.prod(shape), table.shape[-1])  # there may be no motors

@@ -17,6 +17,7 @@ from vincula.errors import ClosureError, VinculaError
 from vincula.kernels.evaluation import NO_CLOSURE
 from vincula.kernels.inputs import Batch, Given
 from vincula.kernels.lane_batch import evaluate_in_lanes
+from vincula.kernels.lane_grids import closed_grid
 from vincula.kernels.lane_path import LaneWriters, numba_is_installed
 from vincula.kernels.one_by_one import MOST_REASONS, Reasons, evaluate_one_by_one
 from vincula.kernels.plans import Plan
@@ -55,7 +56,7 @@ def lane_closing(mechanism: Mechanism, given: Given, *, general: bool = False) -
 
 
 def closed_start(closing: LaneClosing, batch: Batch) -> Configuration | str:
-    """Where the first lane of every stretch starts, closed; or why there is no such configuration."""
+    """Where the first lane starts, closed; or why there is no such configuration."""
     home = closing.mechanism.home
     start = home if batch.first is None else home.from_flat(batch.first)
     if (start is home and closing.home_is_closed) or closing.starts_at(start):
@@ -81,7 +82,7 @@ def evaluate_closed(
 
     Args:
         closing: The closing in lanes.
-        start: Where the first lane of every stretch starts, closed.
+        start: Where the first lane starts, closed.
         writers: The quantities in lanes.
         variants: The mechanisms by parameter values.
         plan: The quantities in the reference path.
@@ -156,7 +157,7 @@ def _closed(
 ) -> ClosedLanes:
     if batch.starts is not None:
         return closing.run_each(values, batch.starts, threads)
-    return closing.run(values, start, batch.stretch, threads)
+    return closed_grid(closing, values, batch.shape, start, threads)
 
 
 class SingleClosing:

@@ -98,7 +98,7 @@ def rows_of(
     """
     if batch.first is not None or batch.starts is not None:
         return "lanes close designs from home only"
-    places = max(batch.stretch, 1)
+    places = max(batch.shape[-1], 1) if batch.shape else 1
     tables = {name: column.reshape(-1, places) for name, column in batch.parameters.items()}
     if any((table != table[:, :1]).any() for table in tables.values()):
         return "dimensions differ from place to place"

@@ -99,29 +99,6 @@ class Chunking:
         return flat.ravel()
 
 
-def walk(extent: tuple[int, ...]) -> NDArray[np.int64]:
-    """An order in which to visit a block so that each point is a neighbour of the one before.
-
-    Rows are walked to and fro (a reflected mixed-radix Gray code): consecutive points differ by one
-    step along one dimension.  It begins at the first point.
-
-    Args:
-        extent: Points along every dimension.
-
-    Returns:
-        Row-major places of the points, in the order of the walk.
-    """
-    step = np.arange(math.prod(extent), dtype=np.int64)
-    place = np.zeros_like(step)
-    stride = step.size
-    for size in extent:
-        rounds, stride = step // stride, stride // size
-        along = step // stride % size
-        # Turn round after every complete round of the dimensions before this one.
-        place += np.where(rounds % 2 == 1, size - 1 - along, along) * stride
-    return place
-
-
 def near_walk(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """An order in which to visit scattered points with short steps: along a Z-shaped curve.
 

@@ -16,6 +16,7 @@ from vincula.kernels.closing import pose_from
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.paths import Path
+from vincula.sweep.chunks import near_walk
 
 if TYPE_CHECKING:
     from vincula.sweep.sweep import Sweep
@@ -52,11 +53,11 @@ def all_starts(sweep: Sweep, upto: int) -> dict[int, Vector]:
 
 
 def _first(sweep: Sweep, chunk: int) -> Matrix:
-    """The first point of the walk through a chunk."""
+    """The point of a chunk that is visited first."""
     if not sweep.work.scattered:
         return sweep.points.at(sweep.chunking.indices(chunk)[:1])
     values = sweep.values(chunk)
-    return values[sweep.work.order(values, sweep.chunking.extent(chunk))[:1]]
+    return values[near_walk(values)[:1]]
 
 
 def _next(

@@ -1,8 +1,8 @@
 """One work unit: the points of a chunk evaluated, the same numbers whoever computes them.
 
-Loops are closed from neighbour to neighbour: the points of a chunk are visited in the order of a walk
-with short steps, from the start that was fixed for the chunk before the run.  Only the chunk and its start
-decide what is computed.
+Loops are closed from neighbour to neighbour, from the start that was fixed for the chunk before the run:
+those of a grid from row to row, scattered ones in the order of a walk with short steps.  Only the chunk and
+its start decide what is computed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vincula.arrays import Matrix, Vector
 from vincula.kernels.compiled import CompiledMechanism
 from vincula.kernels.evaluation import OK, Evaluation
-from vincula.sweep.chunks import near_walk, walk
+from vincula.sweep.chunks import near_walk
 from vincula.sweep.inputs import Inputs
 from vincula.sweep.ledger import MOST_REASONS
 
@@ -63,10 +63,6 @@ class Work:
         """Whether loops are closed."""
         return self.inputs.given != "configuration"
 
-    def order(self, values: Matrix, extent: tuple[int, ...]) -> NDArray[np.int64]:
-        """The order in which the points of a chunk are visited."""
-        return near_walk(values) if self.scattered else walk(extent)
-
     def evaluate(
         self, values: Matrix, extent: tuple[int, ...], start: Vector | None, threads: int | None = 1
     ) -> Block:
@@ -75,24 +71,33 @@ class Work:
         Args:
             values: Its points, one row a point in row-major order, one column a variable.
             extent: Points along every dimension.
-            start: A configuration near the first point of the walk; None where nothing is closed.
+            start: A configuration near the point that is visited first; None where nothing is closed.
             threads: Threads inside the chunk.
         """
         if not self.closes:
             found = self._evaluation(values, None, threads)
             return Block({name: found[name] for name in found.names}, _reasons(found, None))
-        order = self.order(values, extent)
-        found = self._evaluation(values[order], self.inputs.start.flat if start is None else start, threads)
+        first = self.inputs.start.flat if start is None else start
+        if not self.scattered:
+            found = self._evaluation(values, first, threads, extent)
+            rows = {name: found[name].reshape(len(values), *found[name].shape[len(extent) :])
+                    for name in found.names}  # fmt: skip
+            return Block(rows, _reasons(found, None))
+        order = near_walk(values)
+        found = self._evaluation(values[order], first, threads)
         arrays: dict[str, Array] = {}
         for name in found.names:
             arrays[name] = np.empty_like(found[name])
             arrays[name][order] = found[name]
         return Block(arrays, _reasons(found, order))
 
-    def _evaluation(self, values: Matrix, start: Vector | None, threads: int | None) -> Evaluation:
-        rows, parameters = self.inputs.rows(values)
+    def _evaluation(
+        self, values: Matrix, start: Vector | None, threads: int | None, extent: tuple[int, ...] = (-1,)
+    ) -> Evaluation:
+        rows, flat = self.inputs.rows(values)
+        parameters = {name: column.reshape(extent) for name, column in flat.items()}
         return self.compiled.evaluate(
-            rows,
+            rows.reshape(*extent, rows.shape[1]),
             self.quantities,
             given=self.inputs.given,
             start=start,
@@ -107,14 +112,15 @@ def _reasons(found: Evaluation, order: NDArray[np.int64] | None) -> tuple[tuple[
     Not more than the ledger keeps, and none is asked for beyond them: where nearly all points are not ok,
     words would take longer than numbers.
     """
-    status, visited = found.status, None
+    status, visited = found.status.ravel(), None
     if order is not None:
         visited = np.empty_like(order)
         visited[order] = np.arange(len(order))
         status = status[visited]
     joined: list[tuple[int, int, str]] = []
     for point in np.flatnonzero(status != OK).tolist():
-        text = found.reason(point if visited is None else int(visited[point]))
+        place = np.unravel_index(point if visited is None else visited[point], found.status.shape)
+        text = found.reason(tuple(int(k) for k in place))
         if joined and joined[-1][1] == point - 1 and joined[-1][2] == text:
             joined[-1] = (joined[-1][0], point, text)
         elif len(joined) < MOST_REASONS:

@@ -7,6 +7,7 @@ import pytest
 
 import vincula as vc
 from vincula.kernels.reference_path import ReferencePath
+from vincula.mechanism.branches import branch_of
 
 pytest.importorskip("numba")
 
@@ -51,6 +52,36 @@ def test_lanes_that_do_not_close_are_not_evaluated(monkeypatch: pytest.MonkeyPat
     assert np.isnan(found["kinematic.efficiencies"]).all()
     assert np.isnan(found["configuration"]).all()
     assert "gaps stay open" in found.reason(39)
+
+
+def test_a_grid_around_a_hole_stays_on_one_branch() -> None:
+    """Behind the hole of what motors reach, rows go on from other rows, not from wherever a search ends."""
+    linkage = vc.load("example:five-bar").with_active(["o1", "o5"])
+    angles = np.radians(np.linspace(-120.0, 120.0, 41))
+    grid = np.stack(np.meshgrid(angles, angles, indexing="ij"), axis=-1)
+    found = vc.compile(linkage).evaluate(grid, ("configuration",), given="motors", path="lanes")
+    ok = found.status == 0
+    assert np.array_equal(ok, _within_reach(linkage, grid))
+    inside = np.argwhere(ok)
+    for place in np.random.default_rng(3).choice(inside, 60, replace=False):
+        flat = found["configuration"][tuple(place)]
+        assert branch_of(linkage, linkage.home.from_flat(flat)).assembly == "+", grid[tuple(place)]
+
+
+def _within_reach(linkage: vc.Mechanism, grid: np.ndarray) -> np.ndarray:
+    """Whether coupler and link reach from the end of one driven bar to that of the other."""
+    o1, o2, o3, o4, o5 = (linkage.joint[f"o{k}"].frame_on_first.position for k in range(1, 6))
+    turns = grid * [1.0, -1.0]  # o5 is drawn from the rocker to the ground
+    cosine, sine = np.cos(turns), np.sin(turns)
+
+    def end(foot: np.ndarray, tip: np.ndarray, k: int) -> np.ndarray:
+        x, y = tip - foot
+        turned = [cosine[..., k] * x - sine[..., k] * y, sine[..., k] * x + cosine[..., k] * y]
+        return foot + np.stack(turned, axis=-1)
+
+    way = np.linalg.norm(end(o5, o4, 1) - end(o1, o2, 0), axis=-1)
+    coupler, link = np.linalg.norm(o3 - o2), np.linalg.norm(o4 - o3)
+    return (way <= coupler + link) & (way >= abs(coupler - link))
 
 
 def test_poses_of_a_platform() -> None:

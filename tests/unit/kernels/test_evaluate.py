@@ -300,9 +300,9 @@ def test_what_is_given_is_left_alone(five_bar: vc.CompiledMechanism) -> None:
         kept = numbers.copy()
         found = five_bar.evaluate(numbers, ["kinematic.efficiencies", "configuration"], given=given)
         np.testing.assert_array_equal(numbers, kept)
-        numbers = numbers.copy()
-        numbers.setflags(write=False)
-        again = five_bar.evaluate(numbers, ["kinematic.efficiencies", "configuration"], given=given)
+        frozen = numbers.copy()
+        frozen.setflags(write=False)
+        again = five_bar.evaluate(frozen, ["kinematic.efficiencies", "configuration"], given=given)
         for name in found:
             np.testing.assert_array_equal(again[name], found[name])
             assert not np.shares_memory(found[name], numbers)

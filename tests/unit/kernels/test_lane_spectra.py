@@ -173,7 +173,9 @@ def test_random_mechanisms_as_drawn() -> None:
     assert certain > 1.8 * prepared
 
 
-@pytest.mark.parametrize(("loops", "spatial"), [(1, False), (3, False), (40, False), (100, False), (2, True), (12, True)])
+@pytest.mark.parametrize(
+    ("loops", "spatial"), [(1, False), (3, False), (40, False), (100, False), (2, True), (12, True)]
+)
 def test_ladders(loops: int, spatial: bool, rng: np.random.Generator) -> None:
     mechanism = ladder(loops, spatial=spatial)
     values = nearby(mechanism, rng, 3, far=0.01)

@@ -38,7 +38,6 @@ OPEN_START: Final = 1e-9
 """A start whose gaps are above this, times the characteristic length, is no start for lanes."""
 
 Indices = NDArray[np.int64]
-_ZERO: Final = np.zeros(1, dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,8 +133,25 @@ class LaneClosing:
             stretch: How many configurations follow each other.
             threads: Threads; None for one a core.
         """
+        rows = -(-len(inputs) // max(stretch, 1))
+        given = self.at_home if start is self.mechanism.home else self.given_at(start)
+        return self.run_rows(inputs, _repeated(start.flat, rows), _repeated(given, rows), stretch, threads)
+
+    def run_rows(
+        self, inputs: Matrix, starts: Matrix, given: Matrix, stretch: int, threads: int | None = None
+    ) -> ClosedLanes:
+        """Close rows of configurations, each row from a closed configuration of its own.
+
+        Args:
+            inputs: As in `run`.
+            starts: One a row x coordinates.
+            given: What is given there, one a row x inputs.
+            stretch: Configurations of a row.
+            threads: As in `run`.
+        """
         run = _Run(self, np.require(inputs, np.float64, ["C", "W"]), threads)
-        run.follow(start, max(stretch, 1))
+        run.follow(np.require(starts, np.float64, ["C", "W"]), np.require(given, np.float64, ["C", "W"]),
+                   max(stretch, 1))  # fmt: skip
         return run.result()
 
     def run_each(self, inputs: Matrix, starts: Matrix, threads: int | None = None) -> ClosedLanes:
@@ -146,13 +162,13 @@ class LaneClosing:
             starts: N x coordinates.
             threads: As in `run`.
         """
-        run = _Run(self, np.require(inputs, np.float64, ["C", "W"]), threads)
-        lanes = np.arange(len(inputs), dtype=np.int64)
+        return self.run_rows(inputs, starts, self.given_rows(starts), 1, threads)
+
+    def given_rows(self, configurations: Matrix) -> Matrix:
+        """What is given at closed configurations, N x inputs."""
         home = self.mechanism.home
-        given = np.array([given_at(self.mechanism, self.given, home.from_flat(flat)) for flat in starts])
-        given = given.reshape(len(starts), run.inputs.shape[1])
-        run.close(np.require(starts, np.float64, ["C", "W"]), given, lanes, np.ones_like(lanes))
-        return run.result()
+        found = [given_at(self.mechanism, self.given, home.from_flat(flat)) for flat in configurations]
+        return np.array(found, dtype=np.float64).reshape(len(found), len(self.at_home))
 
 
 class _Run:
@@ -171,23 +187,16 @@ class _Run:
         residual = np.sqrt(self.gaps) * self.closing.length
         return ClosedLanes(self.values, self.closed == 1, self.closed == 2, self.steps, residual)
 
-    def follow(self, start: Configuration, stretch: int) -> None:
-        """All configurations, from the start along every `stretch`."""
+    def follow(self, starts: Matrix, given: Matrix, stretch: int) -> None:
+        """All configurations, along every stretch from its own start."""
         count = len(self.inputs)
         if count == 0:
             return
-        closing, flat = self.closing, start.flat
-        given = closing.at_home
-        if start is not closing.mechanism.home:
-            given = given_at(closing.mechanism, closing.given, start)
-        if count <= min(stretch, STRETCH):
-            self.close(flat[None].copy(), given[None].copy(), _ZERO, np.array([count]))
-            return
-        most = min(stretch, STRETCH) if closing.determined else stretch
-        heads = np.concatenate([np.arange(row, min(row + stretch, count), most)
-                                for row in range(0, count, stretch)])  # fmt: skip
+        most = min(stretch, STRETCH) if self.closing.determined else stretch
+        heads = (np.arange(0, count, stretch)[:, None] + np.arange(0, stretch, most)).ravel()
+        heads = heads[heads < count]
         lengths = np.minimum(np.minimum(most, count - heads), stretch - heads % stretch)
-        starts, at_start = _repeated(flat, len(heads)), _repeated(given, len(heads))
+        starts, at_start = starts[heads // stretch], given[heads // stretch]
         later = heads % stretch != 0
         if later.any():
             self.close(starts[later], at_start[later], heads[later], np.ones(later.sum(), dtype=np.int64))
