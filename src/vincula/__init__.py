@@ -59,7 +59,8 @@ if TYPE_CHECKING:
     from vincula.kernels.compiled import CompiledMechanism
     from vincula.kernels.compiled import compile_mechanism as compile  # noqa: A004
     from vincula.kernels.evaluation import Evaluation
-    from vincula.maps.singularity_map import SingularityMap, map_over
+    from vincula.maps.map_data import SingularityMap
+    from vincula.maps.singularity_map import map_over
     from vincula.maps.variables import Variable
     from vincula.mechanism.branches import Branch
     from vincula.mechanism.closed import ClosedConfiguration
@@ -235,7 +236,7 @@ _HOME = {
     "CompiledMechanism": "vincula.kernels.compiled:CompiledMechanism",
     "compile": "vincula.kernels.compiled:compile_mechanism",
     "Evaluation": "vincula.kernels.evaluation:Evaluation",
-    "SingularityMap": "vincula.maps.singularity_map:SingularityMap",
+    "SingularityMap": "vincula.maps.map_data:SingularityMap",
     "map_over": "vincula.maps.singularity_map:map_over",
     "Variable": "vincula.maps.variables:Variable",
     "Branch": "vincula.mechanism.branches:Branch",

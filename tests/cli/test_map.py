@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -31,8 +32,33 @@ def test_text_data_and_figure(run, tmp_path) -> None:
     assert "platform free crosses it" in result.output
     assert figure.read_text().startswith("<?xml")
     rows = list(csv.reader(table.read_text().splitlines()))
-    assert rows[0] == ["branch", "x [m]", "y [m]", "status", index, "distance [m]"]
+    assert rows[0] == ["branch", "x [m]", "y [m]", "status", index, "distance [m]", "nearest"]
     assert all(row[3] == "ok" and 0.0 <= float(row[4]) <= 1.0 for row in rows[1:])
+
+
+def test_distance_in_colour_and_zarr(run, tmp_path) -> None:
+    """The data set holds what the map holds: distances, the kinds they are to, and the curves."""
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("zarr")
+    xarray = pytest.importorskip("xarray")
+    data, figure = tmp_path / "map.zarr", tmp_path / "map.png"
+    result = run(*OVER, "--index", "distance", "-o", str(figure), "--data", str(data))
+    assert result.exit_code == 0, result.output
+    kept = xarray.open_zarr(data, consolidated=False)
+    reached = kept.reached.values
+    assert kept.distance.attrs["units"] == "m"
+    assert np.isfinite(kept.distance.values[reached]).all()
+    assert (kept.distance.values[reached] >= 0.0).all()
+    kinds = kept.nearest.attrs["meanings"]
+    assert {kinds[code] for code in np.unique(kept.nearest.values[reached])} <= {
+        "platform free", "motors without authority",
+    }  # fmt: skip
+    curve = int(kept.curve_of_point.values[0])
+    place = np.array([kept.curve_x.values[0], kept.curve_y.values[0]])
+    assert kinds[kept.curve_kind.values[curve]] in ("platform free", "motors without authority")
+    here = np.stack(np.meshgrid(kept.x, kept.y, indexing="ij"), axis=-1)[reached[0]]
+    away = np.hypot(*(here - place).T)
+    assert (kept.distance.values[0][reached[0]] <= away + 1e-12).all()
 
 
 def test_json_is_one_object(run) -> None:
@@ -53,7 +79,7 @@ def test_json_is_one_object(run) -> None:
         (["--over", "x=0:one", "--over", "y=0:1"], "one"),
         (["--over", "elbow=0:1", "--over", "y=0:1"], "variable of a map"),
         ([*OVER, "-o", "map.gif"], ".svg"),
-        ([*OVER, "--data", "map.pkl"], ".json or .csv"),
+        ([*OVER, "--data", "map.pkl"], ".json, .csv or .zarr"),
         ([*OVER, "--index", "kinematic.efficiencies"], "one number a point"),
         ([*OVER, "--index", "kinematic.smalest"], "kinematic.smallest"),
     ],

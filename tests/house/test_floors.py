@@ -40,8 +40,8 @@ ROOMS_OF = {
     "mujoco": {"files", "adapters"},
     "pinocchio": {"adapters"},
     "flint": {"numerics"},
-    "xarray": {"sweep"},
-    "zarr": {"sweep"},
+    "xarray": {"sweep", "maps"},  # maps are written as data sets too
+    "zarr": {"sweep", "maps"},
     "distributed": {"sweep"},
 }
 

@@ -60,7 +60,7 @@ def test_five_bar_singularities_are_where_links_are_in_line(made) -> None:
             p["P"] = mechanism.body_poses(crossing.configuration)["coupler"].apply(mechanism.reference.origin)
             free = crossed(p["o3"] - p["o2"], p["o4"] - p["o3"])
             right = crossed(p["o4"] - p["o3"], p["o5"] - p["o4"])
-            left = crossed(p["o2"] - p["o1"], p["P"] - p["o2"]) if made is led_five_bar else 1.0
+            left = crossed(p["o2"] - p["o1"], p["P"] - p["o2"])
             if crossing.kind == "platform free":
                 assert abs(free) < EXACT
             else:
@@ -106,7 +106,8 @@ def test_every_point_reached_is_closed_and_where_it_should_be() -> None:
     first, second = np.meshgrid(*found.grid, indexing="ij")
     places = np.stack([first, second], axis=-1)[sheet.reached]
     assert np.abs(closed["reference.pose"][:, :2] - places).max() < 1e-12
-    assert np.array_equal(closed[INDEX], sheet.quantities[INDEX][sheet.reached])
+    # Kernels, where numba is installed, differ from the reference path in the last digits.
+    assert np.allclose(closed[INDEX], sheet.quantities[INDEX][sheet.reached], rtol=1e-10, atol=1e-12)
     assert np.isnan(sheet.quantities[INDEX][~sheet.reached]).all()
 
 

@@ -23,7 +23,7 @@ from vincula.cli.output import print_json, warnings_on_stderr
 if TYPE_CHECKING:
     from vincula.cli.subject import Subject
     from vincula.maps.curves import Curve
-    from vincula.maps.singularity_map import SingularityMap
+    from vincula.maps.map_data import SingularityMap
     from vincula.maps.variables import Variable
 
 POINTS = 61
@@ -51,8 +51,8 @@ POINTS = 61
     "indices",
     multiple=True,
     metavar="QUANTITY",
-    help="An index to evaluate, such as kinematic.inverse_condition_number:translation; repeatable, the "
-    "first is shown in colour.",
+    help="An index to evaluate, such as kinematic.inverse_condition_number:translation, or distance (to the "
+    "nearest singular curve); repeatable, the first is shown in colour.",
 )
 @click.option(
     "--modes",
@@ -63,7 +63,9 @@ POINTS = 61
 @click.option("--limits/--no-limits", default=True, help="Whether joint limits bound the region.")
 @click.option("-o", "--output", metavar="FIGURE", help="Figure to write: .svg, .png or .pdf.")
 @click.option(
-    "--data", metavar="FILE", help="Data to write: .json (everything) or .csv (a row a point reached)."
+    "--data",
+    metavar="FILE",
+    help="Data to write: .json or .zarr (everything), or .csv (a row a point reached).",
 )
 @click.option("--linkage/--no-linkage", default=True, help="Draw the mechanism in the map where it fits.")
 @click.option("--width", type=click.FloatRange(1.0, 100.0), metavar="INCH", help="Width of the figure.")
@@ -102,12 +104,12 @@ def map_command(
             subject.mechanism,
             chosen,
             start=subject.configuration,
-            quantities=indices,
+            quantities=[name for name in indices if name != "distance"],
             modes="all" if modes == "all" else "start",
             limits=limits,
             progress=_progress(),
         )
-        _write(found, output, data, linkage, width)
+        _write(found, output, data, indices[0] if indices else None, linkage=linkage, width=width)
     if as_json:
         print_json(found.to_dict())
     else:
@@ -147,8 +149,8 @@ def _refuse_endings(output: str | None, data: str | None) -> None:
 
     if output is not None and Path(output).suffix.lower() not in FORMATS:
         raise click.UsageError(f"-o {output}: the figure's name must end in {', '.join(FORMATS)}")
-    if data is not None and Path(data).suffix.lower() not in (".json", ".csv"):
-        raise click.UsageError(f"--data {data}: the name must end in .json or .csv")
+    if data is not None and Path(data).suffix.lower() not in (".json", ".csv", ".zarr"):
+        raise click.UsageError(f"--data {data}: the name must end in .json, .csv or .zarr")
 
 
 def _progress() -> Callable[[str, int, int], None] | None:
@@ -170,7 +172,13 @@ def _progress() -> Callable[[str, int, int], None] | None:
 
 
 def _write(
-    found: SingularityMap, output: str | None, data: str | None, linkage: bool, width: float | None
+    found: SingularityMap,
+    output: str | None,
+    data: str | None,
+    shown: str | None,
+    *,
+    linkage: bool,
+    width: float | None,
 ) -> None:
     from vincula.errors import FileError
 
@@ -178,6 +186,10 @@ def _write(
         if data is not None and Path(data).suffix.lower() == ".csv":
             with Path(data).open("w", newline="", encoding="utf-8") as stream:
                 csv.writer(stream).writerows(_rows(found))
+        elif data is not None and Path(data).suffix.lower() == ".zarr":
+            from vincula.maps.dataset import write_zarr
+
+            write_zarr(found, data)
         elif data is not None:
             import json
 
@@ -186,7 +198,7 @@ def _write(
             from vincula.view.map_figure import plot_map
             from vincula.view.plot import save_figure
 
-            save_figure(plot_map(found, linkage=linkage, width=width), output)
+            save_figure(plot_map(found, shown, linkage=linkage, width=width), output)
     except OSError as error:
         raise FileError(
             f"{error.filename or output or data}: cannot be written ({error.strerror})"
@@ -200,12 +212,15 @@ def _rows(found: SingularityMap) -> list[list[Any]]:
     """A header and a row for every point reached."""
     names = [f"{v.name} [{unit}]" for v, unit in zip(found.variables, found.units, strict=True)]
     indices = list(found.sheets[0].quantities)
-    rows: list[list[Any]] = [["branch", *names, "status", *indices, f"distance [{found.distance_unit}]"]]
+    rows: list[list[Any]] = [
+        ["branch", *names, "status", *indices, f"distance [{found.distance_unit}]", "nearest"]
+    ]
     for k, sheet in enumerate(found.sheets):
         for i, j in zip(*sheet.reached.nonzero(), strict=True):
             rows.append(
                 [k + 1, found.grid[0][i], found.grid[1][j], found.status_names[sheet.status[i, j]],
-                 *(sheet.quantities[name][i, j] for name in indices), sheet.distance[i, j]]
+                 *(sheet.quantities[name][i, j] for name in indices), sheet.distance[i, j],
+                 sheet.nearest[i, j]]
             )  # fmt: skip
     return rows
 
@@ -228,5 +243,7 @@ def _print(found: SingularityMap, subject: Subject) -> None:
             points = sum(len(curve.points) for curve in group)
             pieces = f"{len(group)} curve{'s' if len(group) > 1 else ''}, {points} points"
             click.echo(f"  {kind} {where} ({pieces}): {group[0].crossings[0].words}")
-        if not seen:
+        for kind, words in sheet.everywhere.items():
+            click.echo(f"  {kind} at every point: {words}")
+        if not seen and not sheet.everywhere:
             click.echo("  no singular curve, and the region fills the grid")

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, ModelError, listing
 from vincula.kernels.compiled import compile_mechanism
-from vincula.kernels.evaluation import NO_CLOSURE, STATUS_NAMES, plain_floats
-from vincula.maps.curves import Curve, curves, distances, outline
-from vincula.maps.loci import KINDS, between, crossings, outer_edge
+from vincula.kernels.evaluation import NO_CLOSURE
+from vincula.maps.curves import GRID, Chain, Curve, chains, curves_of, distances, outline
+from vincula.maps.loci import KINDS, crossings, outer_edge, singularity
+from vincula.maps.map_data import MapSheet, SingularityMap, size_of
+from vincula.maps.minima import hidden
+from vincula.maps.refining import extended, refined
 from vincula.maps.sheet import Sheet, mask
+from vincula.maps.sides import singular_everywhere
 from vincula.maps.variables import Plane, Variable
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
@@ -28,85 +29,6 @@ Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done, and how much there is."""
 SAME: Final = 1e-6
 """Configurations whose joint points agree to this times L are one."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MapSheet:
-    """One branch of a map.
-
-    Attributes:
-        start: The configuration that it was filled from.
-        reached: For every point of the grid, whether the branch reaches it.
-        configurations: Joint values at every point, NaN where it is not reached [m, rad].
-        quantities: The indices asked for, NaN where not reached.
-        status: Status of every point (see `status_names`); not reached counts as no closure.
-        curves: Singular curves on the sheet, and the pieces of its edge.
-        distance: Distance from every point to the nearest singular curve, in the unit of the variables,
-            or in shares of their ranges where these differ.
-        outline: The edge as closed loops; none where the region runs out of the grid.
-    """
-
-    start: Configuration
-    reached: NDArray[np.bool_]
-    configurations: NDArray[np.float64]
-    quantities: Mapping[str, NDArray[np.float64]]
-    status: NDArray[np.uint8]
-    curves: tuple[Curve, ...]
-    distance: NDArray[np.float64]
-    outline: tuple[Matrix, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class SingularityMap:
-    """A map over two variables.
-
-    Attributes:
-        mechanism: The mechanism.
-        variables: What it is drawn over.
-        units: Units of the variables.
-        grid: Values of the variables.
-        sheets: One a branch.
-        distance_unit: Unit of distances: that of the variables, or `share of the range`.
-    """
-
-    mechanism: Mechanism
-    variables: tuple[Variable, ...]
-    units: tuple[str, str]
-    grid: tuple[Vector, ...]
-    sheets: tuple[MapSheet, ...]
-    distance_unit: str
-    status_names = STATUS_NAMES
-
-    @property
-    def curves(self) -> tuple[Curve, ...]:
-        """The curves of all sheets."""
-        return tuple(curve for sheet in self.sheets for curve in sheet.curves)
-
-    def lengths(self) -> dict[str, float]:
-        """Total length of the singular curves by kind, in `distance_unit`; a quick summary."""
-        size = _size(self.variables, self.units)
-        total: dict[str, float] = {}
-        for curve in self.curves:
-            steps = np.diff(curve.points / size, axis=0)
-            length = float(np.sqrt((steps * steps).sum(axis=1)).sum())
-            total[curve.kind] = total.get(curve.kind, 0.0) + length
-        return total
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything for JSON: schema `vincula/map/1`; null where nothing is reached."""
-        reference = self.mechanism.reference
-        return {
-            "schema": "vincula/map/1",
-            "mechanism": self.mechanism.name,
-            "reference": None if reference is None else reference.body,
-            "active": list(self.mechanism.active),
-            "variables": [
-                {"name": v.name, "unit": unit, "values": values.tolist()}
-                for v, unit, values in zip(self.variables, self.units, self.grid, strict=True)
-            ],
-            "distance_unit": self.distance_unit,
-            "sheets": [_sheet_dict(sheet) for sheet in self.sheets],
-        }
 
 
 def map_over(
@@ -178,44 +100,71 @@ def _finished(
     progress: Progress | None,
     words: str,
 ) -> MapSheet:
-    shape = (len(sheet.grid[0]), len(sheet.grid[1]))
     edge = outer_edge(sheet)
-    found: list[Curve] = []
-    for block, of_block in crossings(sheet).items():
-        found += [_smoothed(sheet, block, curve) for curve in curves(of_block, shape, edge=False)]
-    found += curves(edge, shape, edge=True)
+    reached = mask(sheet)
+    loops = [refined(sheet, chain, None) for chain in outline(edge, reached, sheet.grid)]
+    found = _singular(sheet) + _bounds(loops)
     if progress is not None:
         progress(f"{words}: curves", 1, 1)
-    reached = mask(sheet)
-    values = np.full((*shape, len(compiled.coordinates)), np.nan)
-    for node, point in sheet.points.items():
-        values[node] = sheet.configuration(point).flat
-    indices = {name: np.full(shape, np.nan) for name in asked}
-    status = np.full(shape, NO_CLOSURE, dtype=np.uint8)
-    # Closing took far longer than this will; kernels would first have to be loaded.
-    result = compiled.evaluate(values[reached], asked, path="reference")
+    values = np.full((*sheet.shape, len(compiled.coordinates)), np.nan)
+    values[reached] = sheet.branch.equations.configurations(sheet.states[sheet.reached], sheet.plane.start)
+    indices = {name: np.full(sheet.shape, np.nan) for name in asked}
+    status = np.full(sheet.shape, NO_CLOSURE, dtype=np.uint8)
+    result = compiled.evaluate(values[reached], asked)
     status[reached] = result.status
     for name in asked:
         indices[name][reached] = result[name]
-    plane = sheet.plane
-    places = np.stack(np.meshgrid(*sheet.grid, indexing="ij"), axis=-1)
-    singular = [curve for curve in found if curve.kind in KINDS]
-    distance = distances(places, singular, _size(plane.variables, plane.units))
-    distance = np.where(reached, distance, np.nan)
-    return MapSheet(begin, reached, values, indices, status, tuple(found), distance, outline(edge, shape))
+    distance, nearest = _distances(sheet, found)
+    lines = tuple(np.array([point.values for point in loop.crossings]) for loop in loops)
+    return MapSheet(
+        begin, reached, values, indices, status, tuple(found), distance, nearest, lines, _everywhere(sheet)
+    )
 
 
-def _smoothed(sheet: Sheet, block: str, curve: Curve) -> Curve:
-    """The curve with a point more between any two."""
-    ends = [*curve.crossings, curve.crossings[0]] if curve.closed else list(curve.crossings)
-    found = [ends[0]]
-    for one, two in pairwise(ends):
-        middle = between(sheet, block, one, two)
-        found += [two] if middle is None or middle.kind != curve.kind else [middle, two]
-    if curve.closed:
-        found.pop()
-    points = np.array([crossing.values for crossing in found])
-    return Curve(curve.kind, curve.edge, points, curve.closed, tuple(found))
+def _distances(sheet: Sheet, found: Sequence[Curve]) -> tuple[NDArray[np.float64], NDArray[np.str_]]:
+    """Distance of every point reached from the nearest singular curve, and of which kind that is."""
+    plane, reached = sheet.plane, mask(sheet)
+    places = np.stack(np.meshgrid(*sheet.grid, indexing="ij"), axis=-1)[reached]
+    size = size_of(plane.variables, plane.units)
+    everywhere = _everywhere(sheet)
+    away = np.array([
+        np.zeros(len(places)) if kind in everywhere
+        else distances(places, [curve for curve in found if curve.kind == kind], size)
+        for kind in KINDS
+    ])  # fmt: skip
+    distance = np.full(sheet.shape, np.nan)
+    distance[reached] = away.min(axis=0)
+    nearest = np.full(sheet.shape, "", dtype=f"<U{max(map(len, KINDS))}")
+    nearest[reached] = np.where(np.isfinite(away.min(axis=0)), np.array(KINDS)[away.argmin(axis=0)], "")
+    return distance, nearest
+
+
+def _everywhere(sheet: Sheet) -> dict[str, str]:
+    """What is singular all over a sheet, by kind, in words."""
+    state = sheet.states[int(np.flatnonzero(sheet.reached)[0])]
+    found = [singularity(sheet, state, k, ()) for k in singular_everywhere(sheet)]
+    return {one.kind: str(one) for one in found}
+
+
+def _singular(sheet: Sheet) -> list[Curve]:
+    """The singular curves that cross a sheet, loops and points between the lines of the grid among them."""
+    found = []
+    everywhere = singular_everywhere(sheet)
+    on_edges = crossings(sheet)
+    for k, watch in enumerate(sheet.branch.watching):
+        if sheet.branch.kept[k] == 0 or k in everywhere or k == sheet.branch.followed:
+            continue
+        known = on_edges.get(watch.name, {})
+        lines = [*chains(known, sheet.shape[1]), *hidden(sheet, k, known)]
+        lines = [refined(sheet, line, k) for line in lines]
+        for line in extended(sheet, lines, k):
+            found += curves_of(line, edge=False)
+    return found
+
+
+def _bounds(loops: Sequence[Chain]) -> list[Curve]:
+    """The pieces of the edge, without those where the sheet goes on beyond the grid."""
+    return [curve for loop in loops for curve in curves_of(loop, edge=True) if curve.kind != GRID]
 
 
 def _branches(mechanism: Mechanism, plane: Plane, limits: bool, starts: int = 60) -> list[Configuration]:
@@ -247,11 +196,11 @@ def _branches(mechanism: Mechanism, plane: Plane, limits: bool, starts: int = 60
 def _is_known(sheet: Sheet, begin: Configuration, filled: list[Sheet]) -> bool:
     """Whether a branch is one that was filled already, seen at the grid point nearest to the start."""
     mechanism = sheet.plane.mechanism
-    node, point = sheet.entry()
-    own = joint_points(mechanism, sheet.configuration(point))
+    number, point = sheet.entry()
+    own = joint_points(mechanism, sheet.configuration(point.states[0]))
     for other in filled:
-        if node in other.points:
-            there = joint_points(mechanism, other.configuration(other.points[node]))
+        if other.reached[number]:
+            there = joint_points(mechanism, other.configuration(other.states[number]))
             if np.abs(own - there).max() < SAME * mechanism.length:
                 return True
     return False
@@ -264,30 +213,3 @@ def _refuse_tables(known: Mapping[str, Any], asked: Sequence[str]) -> None:
         raise ModelError(
             f"{listing(wide)}: a map shows one number a point; choose from {listing(scalar, 12)}"
         )
-
-
-def _size(variables: Sequence[Variable], units: Sequence[str]) -> Vector:
-    """What counts as one unit along each variable."""
-    if units[0] == units[1]:
-        return np.ones(2)
-    return np.array([v.high - v.low for v in variables])
-
-
-def _sheet_dict(sheet: MapSheet) -> dict[str, Any]:
-    return {
-        "start": {name: value.tolist() for name, value in sheet.start.items()},
-        "reached": sheet.reached.tolist(),
-        "status": sheet.status.tolist(),
-        "quantities": {name: plain_floats(values) for name, values in sheet.quantities.items()},
-        "distance": plain_floats(sheet.distance),
-        "curves": [
-            {
-                "kind": curve.kind,
-                "edge": curve.edge,
-                "closed": curve.closed,
-                "points": curve.points.tolist(),
-                "words": curve.crossings[len(curve.crossings) // 2].words,
-            }
-            for curve in sheet.curves
-        ],
-    }

@@ -11,6 +11,9 @@ import numpy as np
 
 from vincula.arrays import Vector
 from vincula.errors import ModelError, UnknownNameError, listing
+from vincula.maps.stacked_rows import Stack, products, quaternions
+from vincula.mechanism.closure_problem import ClosureProblem
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.holding import Holding, holding
 from vincula.mechanism.kinematics import reference_position
@@ -60,7 +63,9 @@ class Variable:
 class Plane:
     """Two variables of a mechanism, and what is held at a point of their plane.
 
-    Motors that are no variables stand where they start; so do the other coordinates of the member.
+    Motors that are no variables stand where they start; so do the other coordinates of the member.  A member
+    with no more freedoms than its reference point (a five-bar, a Delta, an arm of two joints in the plane) is
+    looked at as that point: its orientation follows, and motors have authority if they move the point.
 
     Args:
         mechanism: The mechanism.
@@ -80,15 +85,20 @@ class Plane:
             raise ModelError(f"both variables are {variables[0].name!r}: choose two")
         s = mechanism.space.translations
         self._positions, self._turns = POSITIONS[:s], TURNS[s]
-        self._scalar = axis_values(mechanism, start)
         self._motors = motors_at(mechanism, start)
+        drives = motors_at(mechanism, start, [drive.name for drive in mechanism.drives])
+        self._scalar = {**axis_values(mechanism, start), **{k: float(v) for k, v in drives.items()}}
         poses = mechanism.body_poses(start)
         self._point = reference_position(mechanism, poses)
         reference = mechanism.reference
         self._rotation = poses[reference.body].rotation if reference else np.eye(s)
-        of_member = [v.name in self._coordinates and v.name not in self._scalar for v in variables]
-        for variable in variables:
-            self._refuse_unknown(variable.name)
+        self._quaternion = Pose(self._rotation, self._point).as_quaternion_wxyz() if s == 3 else np.zeros(4)
+        self.names = tuple(self._resolved(v.name) for v in self.variables)
+        for name in self.names:
+            self._refuse_unknown(name)
+        if self.names[0] == self.names[1]:
+            raise ModelError(f"{variables[0].name!r} and {variables[1].name!r} are one motor: choose two")
+        of_member = [name in self._coordinates and name not in self._scalar for name in self.names]
         if any(of_member) and not all(of_member):
             raise ModelError(
                 f"{listing(v.name for v in variables)}: one is a joint, the other a coordinate of the "
@@ -96,17 +106,21 @@ class Plane:
             )
         self.of_member = all(of_member)
         self.whole_pose = self.of_member and self._freedom() > s
+        self.point_counts = mechanism.reference is not None and self._freedom() <= s
 
     @property
     def units(self) -> tuple[str, str]:
         """Units of the two variables."""
         linear = axis_linear(self.mechanism)
-        one, two = ("m" if linear.get(v.name, v.name in POSITIONS) else "rad" for v in self.variables)
+        for drive in self.mechanism.drives:
+            guessed = any(linear[axis] for axis in drive.drives)
+            linear[drive.name] = guessed if drive.linear is None else drive.linear
+        one, two = ("m" if linear.get(name, name in POSITIONS) else "rad" for name in self.names)
         return one, two
 
     def held_at(self, values: Sequence[float] | Vector) -> Holding:
         """What is held at a point of the plane."""
-        asked = dict(zip((v.name for v in self.variables), map(float, values), strict=True))
+        asked = dict(zip(self.names, map(float, values), strict=True))
         if not self.of_member:
             return holding(self.mechanism, {**self._motors, **asked})
         point = self._point.copy()
@@ -116,15 +130,43 @@ class Plane:
             return holding(self.mechanism, None, point)
         return holding(self.mechanism, None, Pose(self._turned(asked), point))
 
+    def held_states(self, problem: ClosureProblem, states: Stack, values: Stack) -> Stack:
+        """States with the two variables at other values; what else is held stays as it is.
+
+        Args:
+            problem: Equations in which everything held is an unknown.
+            states: n states.
+            values: n x 2 values of the variables.
+        """
+        result, where = states.copy(), problem.variables
+        if not self.of_member:
+            result[:, where.value[self.names[0]]] = values[:, 0]
+            result[:, where.value[self.names[1]]] = values[:, 1]
+            return result
+        start, turns = where.values_of[MEMBER].start, np.zeros((len(states), 3))
+        turning = False
+        for name, column in zip(self.names, values.T, strict=True):
+            if name in self._positions:
+                result[:, start + self._positions.index(name)] = column
+            elif name == "angle":
+                result[:, start + 2] = column
+            else:
+                turning = True
+                turns[:, self._turns.index(name)] = column
+        if turning:
+            before = np.broadcast_to(self._quaternion, (len(states), 4))
+            result[:, start + 3 : start + 7] = products(quaternions(turns), before)
+        return result
+
     def at_start(self) -> Vector:
         """The values of the two variables at the start."""
-        found = [self._scalar.get(v.name, math.nan) for v in self.variables]
+        found = [self._scalar.get(name, math.nan) for name in self.names]
         if self.of_member:
             known = dict(zip(self._positions, self._point, strict=True))
             known.update(dict.fromkeys(self._turns, 0.0))
             if len(self._point) == 2:
                 known["angle"] = math.atan2(self._rotation[1, 0], self._rotation[0, 0])
-            found = [float(known[v.name]) for v in self.variables]
+            found = [float(known[name]) for name in self.names]
         return np.array(found)
 
     def _turned(self, asked: dict[str, float]) -> Vector:
@@ -144,9 +186,14 @@ class Plane:
         summary = self.mechanism.linearize(self.start).ledger.summary
         free = summary.coordinated + summary.indeterminacy
         s = len(self._point)
-        if any(v.name in self._turns for v in self.variables):
+        if any(name in self._turns for name in self.names):
             return max(free, s + 1)
         return free
+
+    def _resolved(self, name: str) -> str:
+        """The axis or motor over several axes that a motor's name stands for."""
+        known = name in self._scalar or name in self._coordinates
+        return name if known else self.mechanism.motors.get(name, name)
 
     def _refuse_unknown(self, name: str) -> None:
         if name in self._scalar or name in self._coordinates:

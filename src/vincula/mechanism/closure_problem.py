@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Block:
+class Block:
     """Rows of one loop or contact: B against A, or B against where a joint's own values put it."""
 
     name: str
@@ -99,7 +99,7 @@ class ClosureProblem:
         self.variables = Variables(mechanism, [*in_tree, *own], self.drives)
         self._home = axis_values(mechanism, mechanism.home)
         self._paths = self._body_paths()
-        self._blocks: list[_Block] = []
+        self.blocks: list[Block] = []
         self._sources: list[str] = []
         for joint in outside:
             if joint in own:
@@ -137,8 +137,8 @@ class ClosureProblem:
             for column, sign in self._paths[body]:
                 signs[column] = signs.get(column, 0) + side * sign
         used = [column for column, sign in signs.items() if sign]
-        self._blocks.append(
-            _Block(
+        self.blocks.append(
+            Block(
                 part.name,
                 part,
                 selection,
@@ -162,7 +162,7 @@ class ClosureProblem:
     def _linear_rows(self) -> Mask:
         """For every row, whether its gap is in metres."""
         flags = np.zeros(self.rows, dtype=bool)
-        for block in self._blocks:
+        for block in self.blocks:
             start = block.rows.start
             flags[start : start + len(block.selection.linear)] = True
         linear = axis_linear(self.mechanism)
@@ -199,7 +199,7 @@ class ClosureProblem:
         }
         poses = {GROUND: Pose.identity(self.mechanism.space.translations)}
         frames: dict[str, tuple[Pose, Pose]] = {}
-        for joint, forward, beyond in self._steps:
+        for joint, forward, beyond in self.steps:
             step = moved.pop(joint.name, None)
             if forward:
                 first = poses[joint.first] @ joint.frame_on_first
@@ -217,7 +217,7 @@ class ClosureProblem:
         return poses, frames
 
     @cached_property
-    def _steps(self) -> list[tuple[Joint, bool, Pose]]:
+    def steps(self) -> list[tuple[Joint, bool, Pose]]:
         """Tree joints with the constant pose of the next body in the far frame of the joint."""
         return [
             (joint, forward, (joint.frame_on_second if forward else joint.frame_on_first).inverse())
@@ -228,9 +228,9 @@ class ClosureProblem:
         """Residuals alone, scaled."""
         poses, frames = self.poses(state)
         gaps = np.zeros(self.rows)
-        for block in self._blocks:
+        for block in self.blocks:
             gaps[block.rows] = gap_rows(block.selection, *self._ends(block, poses, frames))[0]
-        self._scalar_gaps(state, gaps)
+        self.scalar_gaps(state, gaps)
         return gaps * self.row_scale
 
     def equations(self, state: Vector) -> Equations:
@@ -240,20 +240,20 @@ class ClosureProblem:
         gaps = np.zeros(self.rows)
         jacobian = np.zeros((self.rows, self.columns))
         s = self.mechanism.space.translations
-        for block in self._blocks:
+        for block in self.blocks:
             first, second = self._ends(block, poses, frames)
             gaps[block.rows], rows = gap_rows(block.selection, first, second)
             rows[:, s:] += rows[:, :s] @ moment_arm(second.position - self.centre)
             jacobian[block.rows, block.columns] = (rows @ twists[:, block.columns]) * block.signs
             if block.own is not None:
                 jacobian[block.rows, block.own] = -(rows @ twists[:, block.own])
-        self._scalar_gaps(state, gaps)
-        self._scalar_rows(state, jacobian)
+        self.scalar_gaps(state, gaps)
+        self.scalar_rows(state, jacobian)
         scaled = self.row_scale[:, None] * jacobian * self.variables.column_scale
         return Equations(gaps * self.row_scale, scaled)
 
     def _ends(
-        self, block: _Block, poses: Mapping[str, Pose], frames: Mapping[str, tuple[Pose, Pose]]
+        self, block: Block, poses: Mapping[str, Pose], frames: Mapping[str, tuple[Pose, Pose]]
     ) -> tuple[Pose, Pose]:
         second = poses[block.part.second] @ block.part.frame_on_second
         if block.own is not None:
@@ -273,7 +273,7 @@ class ClosureProblem:
         twists = self._twists(frames)
         s = self.mechanism.space.translations
         found: dict[str, Matrix] = {}
-        for block in self._blocks:
+        for block in self.blocks:
             joint = block.part
             if block.own is not None or not isinstance(joint, Joint) or joint.type == "fixed":
                 continue
@@ -299,7 +299,8 @@ class ClosureProblem:
                 )
         return twists
 
-    def _scalar_gaps(self, state: Vector, gaps: Vector) -> None:
+    def scalar_gaps(self, state: Vector, gaps: Vector) -> None:
+        """Write the residuals of couplings and drives into all residuals, unscaled."""
         if not (self.couplings or self.drives):
             return
         values = self.variables.axis_values(state)
@@ -311,7 +312,8 @@ class ClosureProblem:
             gaps[row] = sum(c * values[a] for a, c in drive.drives.items()) - values[drive.name]
             row += 1
 
-    def _scalar_rows(self, state: Vector, jacobian: Matrix) -> None:
+    def scalar_rows(self, state: Vector, jacobian: Matrix) -> None:
+        """Write the rows of couplings and drives into the Jacobian, unscaled."""
         if not (self.couplings or self.drives):
             return
         values = self.variables.axis_values(state)

@@ -42,6 +42,8 @@ class Variables:
         column: Place of the rate by axis or drive name.
         names: Axis and drive names in the order of the rates.
         column_scale: Metres or radians for one unit of a step.
+        ball_places: For every ball the place of its quaternion and of its first rate.
+        scalar_places: Places of the scalar values, and of their rates.
     """
 
     def __init__(self, mechanism: Mechanism, joints: Sequence[Joint], drives: Sequence[Drive]) -> None:
@@ -51,7 +53,7 @@ class Variables:
         self.columns_of: dict[str, slice] = {}
         self.value: dict[str, int] = {}
         self._size = 0
-        self._balls: list[tuple[int, int]] = []
+        self.ball_places: list[tuple[int, int]] = []
         scalars: list[tuple[int, int]] = []
         names: list[str] = []
         linear: list[bool] = []
@@ -63,7 +65,7 @@ class Variables:
             value, column = place.start, len(names)
             for step in kind.steps:
                 if step == "S":
-                    self._balls.append((value, column))
+                    self.ball_places.append((value, column))
                     value, column = value + 4, column + 3
                 else:
                     scalars.append((value, column))
@@ -83,8 +85,10 @@ class Variables:
         self.names = tuple(names)
         self.column = {name: k for k, name in enumerate(names)}
         self.column_scale = frozen(np.where(np.array(linear, dtype=bool), mechanism.length, 1.0))
-        self._scalar_values = np.array([v for v, _ in scalars], dtype=int)
-        self._scalar_columns = np.array([c for _, c in scalars], dtype=int)
+        self.scalar_places = (
+            np.array([v for v, _ in scalars], dtype=int),
+            np.array([c for _, c in scalars], dtype=int),
+        )
 
     def _reserve(self, name: str, values: int, column: int, columns: int) -> slice:
         place = slice(self._size, self._size + values)
@@ -101,7 +105,7 @@ class Variables:
     @property
     def balls(self) -> list[slice]:
         """Columns of every ball: an angular velocity in the axes that turn with it."""
-        return [slice(column, column + 3) for _, column in self._balls]
+        return [slice(column, column + 3) for _, column in self.ball_places]
 
     def gathered(self, known: Mapping[str, Vector]) -> Vector:
         """The state with the given values by joint or drive name."""
@@ -118,8 +122,9 @@ class Variables:
         """The state after a step."""
         turned = step * self.column_scale
         result = state.copy()
-        result[self._scalar_values] += turned[self._scalar_columns]
-        for value, column in self._balls:
+        values, columns = self.scalar_places
+        result[values] += turned[columns]
+        for value, column in self.ball_places:
             turn = _quaternion(turned[column : column + 3])
             result[value : value + 4] = _product(state[value : value + 4], turn)
         return result
@@ -127,8 +132,9 @@ class Variables:
     def step_between(self, state: Vector, other: Vector) -> Vector:
         """The step from one state to another; balls by the shorter way."""
         step = np.zeros(self.columns)
-        step[self._scalar_columns] = other[self._scalar_values] - state[self._scalar_values]
-        for value, column in self._balls:
+        values, columns = self.scalar_places
+        step[columns] = other[values] - state[values]
+        for value, column in self.ball_places:
             back = state[value : value + 4] * np.array([1.0, -1.0, -1.0, -1.0])
             step[column : column + 3] = _logarithm(_product(back, other[value : value + 4]))
         return step / self.column_scale
@@ -147,9 +153,10 @@ class Variables:
 
     def scalar_values(self, state: Vector) -> Vector:
         """Values in the order of the rates; zero for rates of balls, which have no scalar value."""
-        values = np.zeros(self.columns)
-        values[self._scalar_columns] = state[self._scalar_values]
-        return values
+        values, columns = self.scalar_places
+        found = np.zeros(self.columns)
+        found[columns] = state[values]
+        return found
 
 
 def unwound(kind: JointType, found: Vector, near: Vector) -> Vector:

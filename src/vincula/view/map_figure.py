@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vincula.arrays import Matrix
 from vincula.errors import ModelError
 from vincula.maps.curves import Curve
-from vincula.maps.singularity_map import MapSheet, SingularityMap
+from vincula.maps.map_data import MapSheet, SingularityMap
 from vincula.spatial.space import PLANAR
 from vincula.view import layout
 from vincula.view.plot import drawing_settings, motors_text, need_matplotlib
@@ -25,6 +25,8 @@ REGION: Final = "#eef1f6"
 """Colour of what is reached where no index is drawn."""
 FAINT: Final = 0.45
 """How much of the mechanism is seen over the map."""
+DISTANCE: Final = "distance"
+"""What a map can show without any index."""
 MOST_PANELS: Final = 8
 
 
@@ -60,7 +62,8 @@ def plot_map(
 
     Args:
         found: The map.
-        quantity: Which of its indices is shown in colour; the first by default, none if it has none.
+        quantity: Which of its indices is shown in colour, or `distance` to the nearest singular curve; the
+            first index by default, none if it has none.
         linkage: Whether the mechanism at its start is drawn where the variables are the x and y of a planar
             mechanism's reference point.
         width: Width of the figure [inch].
@@ -71,7 +74,7 @@ def plot_map(
     """
     need_matplotlib()
     known = list(found.sheets[0].quantities)
-    if quantity is not None and quantity not in known:
+    if quantity is not None and quantity not in (*known, DISTANCE):
         raise ModelError(f"the map has no {quantity!r}; it has {', '.join(known) or 'no index'}")
     chosen = quantity or (known[0] if known else None)
     with drawing_settings():
@@ -92,14 +95,15 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
     kinds = [kind for kind in CURVES if any(curve.kind == kind for s in sheets for curve in s.curves)]
     labels = list(dict.fromkeys(CURVES[kind].label for kind in kinds))
     foot = 0.5 + 0.16 * len(labels)
-    size = (paper, foot + rows * tall + 0.32 * rows)
+    gap = 0.32 if rows == 1 else 0.62
+    size = (paper, foot + rows * (tall + gap) - gap + 0.32)
     figure = Figure(figsize=size)
     field = [_field(sheet, quantity) for sheet in sheets]
     scale = _scale(field)
     image = None
     for k, sheet in enumerate(sheets):
         row, column = divmod(k, columns)
-        left, bottom = 0.55 + column * (side + 0.55), foot + (rows - 1 - row) * (tall + 0.32)
+        left, bottom = 0.55 + column * (side + 0.55), foot + (rows - 1 - row) * (tall + gap)
         axes = figure.add_axes((left / size[0], bottom / size[1], side / size[0], tall / size[1]))
         image = _panel(axes, found, sheet, field[k], scale, linkage) or image
         title = motors_text(found.mechanism) if len(sheets) == 1 else f"branch {k + 1}"
@@ -107,7 +111,8 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
     if image is not None and quantity is not None:
         box = ((paper - 0.72) / size[0], foot / size[1], 0.09 / size[0], tall / size[1])
         bar = figure.colorbar(image, cax=figure.add_axes(box))
-        bar.set_label(_words(quantity))
+        unit = f"distance to the nearest\nsingular curve [{found.distance_unit}]"
+        bar.set_label(unit if quantity == DISTANCE else _words(quantity))
         bar.outline.set_linewidth(0.4)
     _legend(figure, kinds, size)
     return figure
@@ -116,7 +121,7 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
 def _field(sheet: MapSheet, quantity: str | None) -> Matrix | None:
     if quantity is None:
         return None
-    values = sheet.quantities[quantity]
+    values = sheet.distance if quantity == DISTANCE else sheet.quantities[quantity]
     return np.where(np.isfinite(values), values, np.nan)
 
 
