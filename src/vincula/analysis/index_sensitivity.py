@@ -7,16 +7,36 @@ several are equal; the others need their extremes apart from the rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from vincula.analysis.ellipsoid import Ellipsoid
+from vincula.analysis.ellipsoid import Class, Ellipsoid, Kind
 from vincula.analysis.indices import Part, components_of_part
 from vincula.analysis.sensitivity import CLUSTER, Semiaxis, Sensitivities, Sensitivity, alone
 from vincula.arrays import Matrix, Vector
+from vincula.numerics.counts import SummaryCounts
 from vincula.numerics.lapack import svd
+
+FLAT: Final = "the ellipsoid is flat in these components: the index has a kink or none"
+EQUAL: Final = "several efficiencies are equal here: their sum has a derivative, a single one has none"
+EQUAL_AXES: Final = "the extreme semi-axis is one of several equal ones: no derivative"
+NO_FINITE: Final = "there is no finite efficiency"
+_UNBOUNDED: Final = {
+    "kinematic": "the ellipsoid is unbounded: the member moves with all motors locked",
+    "passive force": "the ellipsoid is unbounded: some wrenches are carried without motors",
+}
+_BESIDE_STRUCTURAL: Final = (
+    "some wrenches are carried without motors: the set lies beside them, and how its shadow turns with them "
+    "is not known here"
+)
+SYMMETRIC = ("yoshikawa_volume", "isotropy")
+"""Indices that treat all semi-axes alike."""
+
+Slopes = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,15 +54,37 @@ class Derivative:
     reason: str = ""
 
 
+def fixed(kind: Class) -> str:
+    """Why an efficiency that is not finite has no derivative."""
+    return f"the efficiency is {kind}: fixed as long as no rank changes"
+
+
+def no_shadow(kind: Kind, classes: Sequence[Class], counts: SummaryCounts) -> str:
+    """Why the shadow of an ellipsoid has no derivatives; empty where it may have some."""
+    if "infinite" in classes:
+        return _UNBOUNDED.get(kind, "the ellipsoid is unbounded")
+    return _BESIDE_STRUCTURAL if kind != "kinematic" and counts.structural_wrenches > 0 else ""
+
+
+def index_slopes(index: str, squares: Slopes, value: Slopes) -> Slopes:
+    """Derivatives of an index by the squared semi-axes (last axis, descending).
+
+    Args:
+        index: Name of a function in `vincula.analysis.indices`.
+        squares: ... x axes.
+        value: The index.
+    """
+    return _SLOPES[index](squares, value)
+
+
 def efficiency_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: int) -> Derivative:
     """Derivative of one efficiency in the list of an ellipsoid."""
     value = float(ellipsoid.efficiencies[index])
     kind = ellipsoid.classes[index]
     if kind != "finite":
-        return Derivative(value, None, f"the efficiency is {kind}: fixed as long as no rank changes")
+        return Derivative(value, None, fixed(kind))
     if not alone(ellipsoid, index):
-        words = "several efficiencies are equal here: their sum has a derivative, a single one has none"
-        return Derivative(value, None, words)
+        return Derivative(value, None, EQUAL)
     return Derivative(value, found.efficiency(ellipsoid, index))
 
 
@@ -58,20 +100,17 @@ def index_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: str, on:
     from vincula.analysis import indices
 
     value = float(getattr(indices, index)(ellipsoid, on))
-    if "infinite" in ellipsoid.classes:
-        return Derivative(value, None, _UNBOUNDED.get(ellipsoid.kind, "the ellipsoid is unbounded"))
-    if ellipsoid.kind != "kinematic" and found.model.ledger.summary.structural_wrenches > 0:
-        return Derivative(value, None, _BESIDE_STRUCTURAL)
+    why = no_shadow(ellipsoid.kind, ellipsoid.classes, found.model.ledger.summary)
+    if why:
+        return Derivative(value, None, why)
     axes = _SquaredAxes.of(ellipsoid, on)
     if axes is None:
-        return Derivative(
-            value, None, "the ellipsoid is flat in these components: the index has a kink or none"
-        )
-    slopes = _SLOPES[index](axes.values, value)
+        return Derivative(value, None, FLAT)
+    slopes = index_slopes(index, axes.values, np.array(value))
     # Over one component the extremes are one and the same: the index is constant.
     used = np.flatnonzero(slopes) if slopes.any() else np.zeros(1, dtype=np.intp)
-    if slopes.any() and index not in _SYMMETRIC and not all(axes.alone(int(k)) for k in used):
-        return Derivative(value, None, "the extreme semi-axis is one of several equal ones: no derivative")
+    if slopes.any() and index not in SYMMETRIC and not all(axes.alone(int(k)) for k in used):
+        return Derivative(value, None, EQUAL_AXES)
     total = [axes.sensitivity(found, ellipsoid, int(k)).times(float(slopes[k])) for k in used]
     result = total[0]
     for more in total[1:]:
@@ -127,45 +166,36 @@ class _SquaredAxes:
         return found.semiaxis(ellipsoid, axis)
 
 
-def _volume(squares: Vector, value: float) -> Vector:
-    return 0.5 * value / squares
+def _volume(squares: Slopes, value: Slopes) -> Slopes:
+    return np.asarray(0.5 * value[..., None] / squares)
 
 
-def _isotropy(squares: Vector, value: float) -> Vector:
-    count = len(squares)
-    return np.asarray(value * (1.0 / squares - 1.0 / np.mean(squares)) / count)
+def _isotropy(squares: Slopes, value: Slopes) -> Slopes:
+    count, mean = squares.shape[-1], np.mean(squares, axis=-1, keepdims=True)
+    return np.asarray(value[..., None] * (1.0 / squares - 1.0 / mean) / count)
 
 
-def _smallest(squares: Vector, value: float) -> Vector:
-    slopes = np.zeros(len(squares))
-    slopes[-1] = 0.5 / value
+def _smallest(squares: Slopes, value: Slopes) -> Slopes:
+    slopes = np.zeros_like(squares)
+    slopes[..., -1] = 0.5 / value
     return slopes
 
 
-def _condition(squares: Vector, value: float) -> Vector:
-    slopes = np.zeros(len(squares))
-    if len(squares) > 1:
-        slopes[0], slopes[-1] = 0.5 * value / squares[0], -0.5 * value / squares[-1]
+def _condition(squares: Slopes, value: Slopes) -> Slopes:
+    slopes = np.zeros_like(squares)
+    if squares.shape[-1] > 1:
+        slopes[..., 0], slopes[..., -1] = 0.5 * value / squares[..., 0], -0.5 * value / squares[..., -1]
     return slopes
 
 
-def _inverse_condition(squares: Vector, value: float) -> Vector:
-    return -_condition(squares, 1.0 / value) * value * value
+def _inverse_condition(squares: Slopes, value: Slopes) -> Slopes:
+    return np.asarray(-_condition(squares, 1.0 / value) * (value * value)[..., None])
 
 
-_SLOPES: dict[str, Callable[[Vector, float], Vector]] = {
+_SLOPES: dict[str, Callable[[Slopes, Slopes], Slopes]] = {
     "yoshikawa_volume": _volume,
     "isotropy": _isotropy,
     "smallest_singular_value": _smallest,
     "condition_number": _condition,
     "inverse_condition_number": _inverse_condition,
 }
-_UNBOUNDED = {
-    "kinematic": "the ellipsoid is unbounded: the member moves with all motors locked",
-    "passive force": "the ellipsoid is unbounded: some wrenches are carried without motors",
-}
-_BESIDE_STRUCTURAL = (
-    "some wrenches are carried without motors: the set lies beside them, and how its shadow turns with them "
-    "is not known here"
-)
-_SYMMETRIC = ("yoshikawa_volume", "isotropy")

@@ -52,7 +52,7 @@ def _measured(
         return found if np.all(found.smooth) and np.isfinite(found.gradient).all() else None
 
     if isinstance(measure, Index):
-        from vincula.kernels.gradients import SMOOTH
+        from vincula.kernels.gradients_one_by_one import SMOOTH
 
         word = measure.quantity.partition(":")[0]
         kind, _, part = word.partition(".")

@@ -7,14 +7,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from vincula.arrays import Vector
 from vincula.errors import ModelError, ShapeError, listing
 from vincula.kernels.evaluation import Evaluation
-from vincula.kernels.inputs import Given, batch_of
+from vincula.kernels.inputs import Batch, Given, batch_of
 from vincula.kernels.plans import Plan, plan_for, refuse_bad_weights
-from vincula.kernels.quantities import Quantity, available, coordinates
+from vincula.kernels.quantities import Quantity, available, chosen, coordinates
+from vincula.kernels.reference_path import ReferencePath
 from vincula.kernels.runner import Runner
 from vincula.kernels.variants import Builder, Variants
 from vincula.mechanism.configuration import Configuration
@@ -197,6 +198,19 @@ class CompiledMechanism:
         from vincula.kernels.gradients import gradient
 
         return gradient(self, configurations, quantity, wrt=wrt, parameters=parameters)
+
+    def arrays(self, names: tuple[str, ...], batch: Batch) -> Mapping[str, NDArray[Any]]:
+        """Quantities of a batch without a word about their units: what gradients are made from.
+
+        Args:
+            names: Names out of `quantities`.
+            batch: The batch.
+        """
+        key = "", *names
+        if key not in self._plans:
+            quantities = chosen(self._quantities, names)
+            self._plans[key] = Plan(quantities, ReferencePath(quantities, self.weights))
+        return self._runner.run(self._plans[key], batch, "auto", None)[0]
 
     def _plan(self, quantities: Iterable[str]) -> Plan:
         if isinstance(quantities, str):

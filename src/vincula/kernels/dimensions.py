@@ -11,13 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from vincula.analysis.recipes import resolved_weights
+from vincula.analysis.ellipsoid import Kind
+from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quantity
 from vincula.arrays import Matrix
 from vincula.errors import ModelError, listing
 from vincula.kernels.plans import model_without_numbers
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.placement_rates import Numbers, PlacementRates, Stencil
-from vincula.weights import Quantity as Weighed
 from vincula.weights import Weights
 
 if TYPE_CHECKING:
@@ -47,19 +47,27 @@ class Dimensions:
     stencils: tuple[Stencil, ...]
     weights: Weights | None
 
-    def weight_rates(self, quantity: Weighed) -> list[Matrix] | None:
-        """Rates of the metric of a quantity by every parameter; None where no weight can change.
+    def metric_rates(self, kind: Kind) -> list[tuple[Matrix, Matrix]]:
+        """Rates of the metrics of both sides of an ellipsoid by every parameter.
 
         Args:
-            quantity: What is weighed.
+            kind: The ellipsoid.
+
+        Returns:
+            Empty where weights are given: then they do not change.
         """
         if self.weights is not None:
-            return None
-        own = _metric(self.mechanism, quantity)
-        return [
-            sum((weight * (_metric(mechanism, quantity) - own) for weight, mechanism in stencil), 0.0 * own)
-            for stencil in self.stencils
-        ]
+            return []
+        found = []
+        own = _metrics(self.mechanism, kind)
+        for stencil in self.stencils:
+            beside = [(weight, _metrics(mechanism, kind)) for weight, mechanism in stencil]
+            task, motor = (
+                sum((weight * (metrics[side] - own[side]) for weight, metrics in beside), 0.0 * own[side])
+                for side in (0, 1)
+            )
+            found.append((task, motor))
+        return found
 
 
 def dimensions_at(
@@ -99,6 +107,11 @@ def _stencil(variants: Variants, mechanism: Mechanism, at: Mapping[str, float], 
     ]
 
 
-def _metric(mechanism: Mechanism, quantity: Weighed) -> Matrix:
+def _metrics(mechanism: Mechanism, kind: Kind) -> tuple[Matrix, Matrix]:
+    """Metrics of the task and of the motor side."""
     model = model_without_numbers(mechanism)
-    return resolved_weights(model, None).metric(quantity, model).matrix
+    weights = resolved_weights(model, None)
+    return (
+        weights.metric(task_quantity(kind), model).matrix,
+        weights.metric(motor_quantity(kind), model).matrix,
+    )

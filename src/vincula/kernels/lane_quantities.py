@@ -233,7 +233,7 @@ def _of_index(quantity: Quantity, listing: Listing) -> Written | str:
     s = 2 if len(listing.roots) == 3 else 3
     chosen = {"translation": slice(0, s), "rotation": slice(s, None), "all": slice(None)}[quantity.on]
     roots = listing.roots[chosen]
-    index = _INDEX[quantity.part]
+    index = INDEX_OF_AXES[quantity.part]
     from vincula.kernels.semi_axes import singular_values  # numba is there: this is for lanes
 
     def of_all(raw: RawLanes, out: Block) -> None:
@@ -273,7 +273,7 @@ def _isotropy(axes: NDArray[np.float64]) -> Vector:
     return np.asarray(np.where(squares[:, -1] == 0.0, 0.0, found))
 
 
-_INDEX: Final[dict[str, Callable[[NDArray[np.float64]], Vector]]] = {
+INDEX_OF_AXES: Final[dict[str, Callable[[NDArray[np.float64]], Vector]]] = {
     "yoshikawa_volume": _volume,
     "condition": _condition,
     "condition_number": _condition,
@@ -281,3 +281,4 @@ _INDEX: Final[dict[str, Callable[[NDArray[np.float64]], Vector]]] = {
     "isotropy": _isotropy,
     "smallest_singular_value": lambda axes: np.asarray(axes[:, -1]),
 }
+"""Indices of N x semi-axes, longest first."""

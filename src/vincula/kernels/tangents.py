@@ -26,6 +26,8 @@ from vincula.numerics.rank import decide_rank
 
 CLOSES: Final = 1e-7
 """How far loops may stay open, or motors have to move, beside what a parameter moves at all."""
+SEEN: Final = 1e-9
+"""How far derivatives may depend on motions that no joint takes part in."""
 LOOSE: Final = "the member moves with all motors locked: motor positions do not say where it goes"
 NO_CLOSING: Final = "the loops do not close again with the motors held: this parameter has no derivative"
 

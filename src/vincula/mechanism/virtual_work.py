@@ -16,6 +16,7 @@ twist that a row sees, all at the reference point (f, m the halves of a wrench, 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,10 +120,7 @@ class FrameForces:
         Returns:
             N x e x p.
         """
-        lanes, pairs = self.felt.shape[:2]
-        shape = (lanes, redrawn.frames.shape[1], -1)
-        frames = self.on_frames().reshape(lanes, pairs, -1)
-        found = frames @ np.swapaxes(redrawn.frames.reshape(shape), 1, 2)
+        found = _products(self.on_frames(), redrawn.frames)
         found = found + self.on_point @ np.swapaxes(redrawn.point, 1, 2)
         geometric, y, k = len(self.many.layout.signs), self.pairs.forces, self.pairs.rates
         for rate, mate in (
@@ -131,7 +129,7 @@ class FrameForces:
             (redrawn.constant, y[..., geometric:, None] * k[..., None, :]),
         ):
             if rate is not None:
-                found = found + mate.reshape(lanes, pairs, -1) @ np.swapaxes(rate.reshape(shape), 1, 2)
+                found = found + _products(mate, rate)
         return np.asarray(found)
 
     def _on_columns(self) -> tuple[Stack, Stack]:
@@ -199,3 +197,9 @@ def _torques(torque: Stack) -> Stack:
 def _forces(force: Stack, lever: Stack) -> Stack:
     """Forces at the end of levers as wrenches."""
     return np.concatenate([force, crossed(np.broadcast_to(lever, force.shape), force)], axis=-1)
+
+
+def _products(one: Stack, two: Stack) -> Stack:
+    """Sums of products of N x e x ... and N x p x ... numbers: N x e x p."""
+    size = math.prod(one.shape[2:])
+    return one.reshape(*one.shape[:2], size) @ np.swapaxes(two.reshape(*two.shape[:2], size), 1, 2)
