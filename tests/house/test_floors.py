@@ -8,6 +8,7 @@ import pytest
 from tests.house.source import ROOT, SOURCE, imports, modules, tree
 
 FLOORS = {
+    "__main__": 6,
     "cli": 6,
     "files": 5,
     "adapters": 5,

@@ -12,6 +12,7 @@ import click
 
 from vincula.cli.options import output_options
 from vincula.cli.output import print_json, warnings_on_stderr
+from vincula.cli.warming import tell_first_wait
 
 if TYPE_CHECKING:
     from vincula.design.front import Front
@@ -104,6 +105,7 @@ def design_command(
         given = {"seed": seed, "population": population, "generations": generations}
         wanted.how.update({name: value for name, value in given.items() if value is not None})
         problem.path = path
+        tell_first_wait(quiet=quiet or path == "reference")
         with ProgressLine(quiet=quiet) as progress:
             found = _found(problem, wanted, log_file, progress)
         if as_json:

@@ -14,6 +14,7 @@ import click
 from vincula.cli.exits import DONE, INTERRUPTED, REFUSED
 from vincula.cli.options import output_options, together
 from vincula.cli.output import print_json, warnings_on_stderr
+from vincula.cli.warming import tell_first_wait
 
 if TYPE_CHECKING:
     from vincula.sweep.dataset import SweepData
@@ -179,6 +180,7 @@ def _run(
         raise SweepError(f"{place.data}: nothing has been begun there; use `vincula sweep run`", kind="usage")
     with warnings_on_stderr():
         sweep = sweep_of(read)
+        tell_first_wait(quiet=quiet)
         try:
             with ProgressOnStderr(quiet=quiet) as progress:
                 data = sweep.run(

@@ -29,3 +29,12 @@ def warm_up_command(as_json: bool) -> None:
     page.table(Table([Column("kernel"), Column("seconds")], rows))
     page.sentence(f"Kept in {cache_folder()}")
     page.show()
+
+
+def tell_first_wait(*, quiet: bool) -> None:
+    """Say on stderr that the kernels are not compiled yet, before a command waits for that."""
+    from vincula.kernels.warming import first_wait
+
+    words = "" if quiet else first_wait()
+    if words:
+        click.echo(words, err=True)

@@ -59,6 +59,16 @@ def warm_up() -> dict[str, float]:
     return seconds
 
 
+def first_wait() -> str:
+    """What to tell somebody whose first batch has to wait for the compiler; empty where none has to."""
+    if not numba_is_installed() or any(cache_folder().glob("**/entries.spectra_entry.*.nbi")):
+        return ""
+    return (
+        "the kernels of batches are compiled first, once on this machine: one to four minutes "
+        "(`vincula warm-up` does it beforehand)"
+    )
+
+
 def cache_folder() -> Path:
     """Where compiled kernels are kept: beside their source, or for the user where that is read-only."""
     own = Path(__file__).parent / "lanes"

@@ -1,0 +1,5 @@
+"""`python -m vincula`: the command line."""
+
+from vincula.cli.main import main
+
+main()
