@@ -1,8 +1,9 @@
 """How the numbers of a mechanism change with its parameters, for one set of parameters at a time.
 
-A builder is any function, so its rates are those of a smooth function taken by extrapolated central
-differences of what it draws (frames in their bodies, axes, leads, couplings, weights): relative errors are
-1e-12 where it is smooth over steps of `STEP`.  Everything that follows at a configuration is analytic.
+Where the arithmetic of a builder can be traced its rates are exact (`traced_rates`).  Otherwise they are
+extrapolated central differences of what it draws (frames in their bodies, axes, leads, couplings, weights):
+relative errors are 1e-12 where it is smooth over steps of `STEP`.  Everything that follows at a
+configuration is analytic.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quan
 from vincula.arrays import Matrix
 from vincula.errors import ModelError, listing
 from vincula.kernels.plans import model_without_numbers
+from vincula.kernels.traced_rates import traced_rates
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.placement_rates import Numbers, PlacementRates, Stencil
 from vincula.weights import Weights
@@ -37,7 +39,7 @@ class Dimensions:
         mechanism: The mechanism.
         names: Names of the parameters.
         placements: Rates of everything that is drawn.
-        stencils: For every parameter mechanisms beside this one.
+        stencils: For every parameter mechanisms beside this one; empty where its rates are exact.
         weights: Weights of all evaluations; None for those of the mechanism, which may change too.
     """
 
@@ -56,7 +58,7 @@ class Dimensions:
         Returns:
             Empty where weights are given: then they do not change.
         """
-        if self.weights is not None:
+        if self.weights is not None or not any(self.stencils):
             return []
         found = []
         own = _metrics(self.mechanism, kind)
@@ -93,6 +95,13 @@ def dimensions_at(
     if missing:
         raise ModelError(f"parameters {listing(missing)} have no default: give their values in parameters")
     mechanism = variants.at(settings)
+    if weights is not None or mechanism.weights is None:
+        build = getattr(variants.build, "outline", variants.build)
+        exact = None if build is None else traced_rates(mechanism, build, names, at)
+        if exact is not None:
+            nothing: tuple[Stencil, ...] = ((),) * len(names)
+            placements = PlacementRates.of(mechanism, names, exact, nothing)
+            return Dimensions(mechanism, tuple(names), placements, nothing, weights)
     stencils = tuple(_stencil(variants, mechanism, at, name) for name in names)
     rates = [Numbers.rates(stencil) for stencil in stencils]
     placements = PlacementRates.of(mechanism, names, rates, stencils)

@@ -33,7 +33,7 @@ UNKNOWN, KNOWN, REFUSED = 0, 1, 2
 LayOut = Callable[[Any], tuple[NDArray[np.int64], Sequence[Number]]]
 """Tables and constants of a program for a mechanism or its twin."""
 TryBuild = Callable[[Mapping[str, float]], Mechanism | str]
-_UNTRACED: Final = (TypeError, AttributeError, LookupError, Untraceable)
+UNTRACED: Final = (TypeError, AttributeError, LookupError, Untraceable)
 """What running a builder with numbers that are no floats may end in."""
 
 
@@ -116,7 +116,7 @@ class TracedGeometry:
         values = dict(zip(self.names, map(float, row), strict=True))
         try:
             code, numbers = self._lay_out(self._twin(trace, values))
-        except _UNTRACED:
+        except UNTRACED:
             return _Case(Formulas.of(trace, ()), UNKNOWN, confirmed=True)
         except (ArithmeticError, ValueError):
             return _Case(Formulas.of(trace, ()), REFUSED, confirmed=False)
