@@ -14,11 +14,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from vincula.analysis.ellipsoid import Class, Ellipsoid, Kind
+from vincula.analysis.ellipsoid import Class, Ellipsoid
 from vincula.analysis.indices import Part, components_of_part
 from vincula.analysis.sensitivity import CLUSTER, Semiaxis, Sensitivities, Sensitivity, alone
 from vincula.arrays import Matrix, Vector
-from vincula.numerics.counts import SummaryCounts
 from vincula.numerics.lapack import svd
 
 FLAT: Final = "the ellipsoid is flat in these components: the index has a kink or none"
@@ -29,9 +28,9 @@ _UNBOUNDED: Final = {
     "kinematic": "the ellipsoid is unbounded: the member moves with all motors locked",
     "passive force": "the ellipsoid is unbounded: some wrenches are carried without motors",
 }
-_BESIDE_STRUCTURAL: Final = (
-    "some wrenches are carried without motors: the set lies beside them, and how its shadow turns with them "
-    "is not known here"
+_UNWEIGHED: Final = (
+    "some wrenches are carried without motors, and the weights leave components out: which forces are "
+    "orthogonal to them is not defined"
 )
 SYMMETRIC = ("yoshikawa_volume", "isotropy")
 """Indices that treat all semi-axes alike."""
@@ -59,11 +58,19 @@ def fixed(kind: Class) -> str:
     return f"the efficiency is {kind}: fixed as long as no rank changes"
 
 
-def no_shadow(kind: Kind, classes: Sequence[Class], counts: SummaryCounts) -> str:
-    """Why the shadow of an ellipsoid has no derivatives; empty where it may have some."""
+def no_shadow(ellipsoid: Ellipsoid, classes: Sequence[Class], structural: int) -> str:
+    """Why the shadow of an ellipsoid has no derivatives; empty where it may have some.
+
+    Args:
+        ellipsoid: The ellipsoid, for its kind and weights.
+        classes: Classes that it lists.
+        structural: Number of structural wrenches.
+    """
     if "infinite" in classes:
-        return _UNBOUNDED.get(kind, "the ellipsoid is unbounded")
-    return _BESIDE_STRUCTURAL if kind != "kinematic" and counts.structural_wrenches > 0 else ""
+        return _UNBOUNDED.get(ellipsoid.kind, "the ellipsoid is unbounded")
+    if ellipsoid.kind != "kinematic" and structural > 0 and not ellipsoid.task_weight.definite:
+        return _UNWEIGHED
+    return ""
 
 
 def index_slopes(index: str, squares: Slopes, value: Slopes) -> Slopes:
@@ -100,7 +107,7 @@ def index_derivative(found: Sensitivities, ellipsoid: Ellipsoid, index: str, on:
     from vincula.analysis import indices
 
     value = float(getattr(indices, index)(ellipsoid, on))
-    why = no_shadow(ellipsoid.kind, ellipsoid.classes, found.model.ledger.summary)
+    why = no_shadow(ellipsoid, ellipsoid.classes, found.model.ledger.summary.structural_wrenches)
     if why:
         return Derivative(value, None, why)
     axes = _SquaredAxes.of(ellipsoid, on)

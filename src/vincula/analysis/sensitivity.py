@@ -34,23 +34,25 @@ CONSTANT_RANK = 1e-7
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Weighing:
-    """How one number depends on the metrics: sum of shares (t^T W_t t - costs s^T W_m s), t and s held.
+    """How one number depends on the metrics: sum of shares (r^T W_t t - costs s^T W_m s), vectors held.
 
     Attributes:
         tasks: t x i task sides, physical.
+        mates: t x i, what they are weighed with; mostly themselves.
         motors: r x i motor sides, physical.
         shares: i factors.
         costs: i factors.
     """
 
     tasks: Matrix
+    mates: Matrix
     motors: Matrix
     shares: Vector
     costs: Vector
 
     def along(self, task: Matrix, motor: Matrix) -> float:
         """The derivative for rates of change of both metrics."""
-        of_tasks = np.einsum("ai,ab,bi->i", self.tasks, task, self.tasks)
+        of_tasks = np.einsum("ai,ab,bi->i", self.mates, task, self.tasks)
         of_motors = np.einsum("ai,ab,bi->i", self.motors, motor, self.motors)
         return float(self.shares @ (of_tasks - self.costs * of_motors))
 
@@ -88,6 +90,7 @@ class Sensitivity:
             np.hstack([self.motions, other.motions]),
             Weighing(
                 np.hstack([one.tasks, two.tasks]),
+                np.hstack([one.mates, two.mates]),
                 np.hstack([one.motors, two.motors]),
                 np.concatenate([one.shares, two.shares]),
                 np.concatenate([one.costs, two.costs]),
@@ -112,6 +115,21 @@ class Semiaxis:
     task: Vector
     motor: Vector
     chosen: Vector
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Beside:
+    """What structural wrenches add to the derivative of a shadow.
+
+    Attributes:
+        load: The structural wrench that the shadow sees of its own slope.
+        force: The force y of the term -y^T dA k, scaled.
+        motion: Its motion k.
+    """
+
+    load: Vector
+    force: Vector
+    motion: Vector
 
 
 class Sensitivities:
@@ -172,18 +190,46 @@ class Sensitivities:
             ellipsoid: The ellipsoid.
             axis: The semi-axis.
         """
-        weigh_task, weigh_motor = ellipsoid.task_weight.matrix, ellipsoid.motor_weight.matrix
+        weigh_motor = ellipsoid.motor_weight.matrix
         t, m = self._factors(ellipsoid)
         seen = axis.chosen * axis.task
+        on_task = 2.0 * axis.chosen * (ellipsoid.task_weight.matrix @ seen)
+        beside = self._beside(ellipsoid, axis, on_task)
         forces, motions = self._of_pair(
             axis.kind,
             axis.task / t,
             axis.motor / m,
-            2.0 * t * axis.chosen * (weigh_task @ seen),
+            t * (on_task if beside is None else on_task - ellipsoid.task_weight.matrix @ beside.load),
             -2.0 * axis.square * m * (weigh_motor @ axis.motor),
         )
-        weighing = Weighing(seen[:, None], axis.motor[:, None], np.ones(1), np.array([axis.square]))
-        return Sensitivity(forces, motions, weighing)
+        own = seen[:, None], seen[:, None], axis.motor[:, None], np.ones(1), np.array([axis.square])
+        found = Sensitivity(forces, motions, Weighing(*own))
+        if beside is None:
+            return found
+        nothing = np.zeros((len(axis.motor), 1))
+        turned = Weighing(axis.task[:, None], -beside.load[:, None], nothing, np.ones(1), np.zeros(1))
+        return found + Sensitivity(beside.force[:, None], beside.motion[:, None], turned)
+
+    def _beside(self, ellipsoid: Ellipsoid, axis: Semiaxis, on_task: Vector) -> _Beside | None:
+        """How a shadow of active forces turns with the structural wrenches that they are orthogonal to.
+
+        Wrenches that motors push with are, in the metric, orthogonal to those that cost no torque; W times
+        one of them is a twist t that the motors reach.  As A changes, structural wrenches S turn by what
+        the motions of t do along them, and the active ones after them: S^T t stays zero.
+        """
+        count = self._ledger.summary.structural_wrenches
+        if axis.kind not in ("active force", "dual force") or count <= 0 or axis.chosen.all():
+            return None
+        n_a, n_p = self._widths
+        twist, metric = self.model.scaled.twist, ellipsoid.task_weight
+        left, values, right = svd(self.kernel[n_a + n_p :])
+        reached = len(twist) - count
+        structural = left[:, reached:] / twist[:, None]
+        structural = structural @ np.linalg.inv(np.linalg.qr(metric.factor @ structural)[1])
+        load = structural @ (structural.T @ on_task)
+        way = left[:, :reached].T @ ((metric.matrix @ axis.task) / twist)
+        motion = self.kernel @ (right[:, :reached] @ (way / values[:reached]))
+        return _Beside(load, self._pulled(np.concatenate([np.zeros(n_a), twist * load])), motion)
 
     def _of_pair(
         self, kind: str, task: Vector, motor: Vector, on_task: Vector, on_motor: Vector

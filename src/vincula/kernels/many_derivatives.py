@@ -224,7 +224,10 @@ class ManyDerivatives:
         chosen = components_of_part(question.probe, question.asked.on)
         seen = factor[:, chosen]
         count = min(seen.shape)
-        if no_shadow(question.kind, classes, found.counts) or pairs.squares.shape[1] < count:
+        if (
+            no_shadow(question.probe, classes, found.counts.structural_wrenches)
+            or pairs.squares.shape[1] < count
+        ):
             return None
         cast = seen @ np.swapaxes(pairs.tasks[..., chosen], 1, 2)
         _, lengths, right = np.linalg.svd(cast, full_matrices=False)
@@ -252,18 +255,22 @@ class ManyDerivatives:
     def _along(self, found: ManySensitivities, axes: ManyAxes) -> tuple[Stack, NDArray[np.bool_]]:
         """Derivatives of semi-axes by everything that is asked for, and where they are certain."""
         probe = self._question.probe
-        forces = found.forces_of(*found.dyads(axes, probe.task_weight, probe.motor_weight))
+        forces, motions, load = found.dyads(axes, probe.task_weight, probe.motor_weight)
+        felt = found.forces_of(forces, motions)
         tangents = ManyTangents(found)
         if self._dimensions is None:
             of = tangents.by_motors if self._wrt == "motors" else tangents.by_joints
-            along, certain = of(forces)
-            return -along, certain
-        along, certain = tangents.by_dimensions(forces, self._dimensions.placements)
-        rates = self._dimensions.metric_rates(self._question.kind)
-        if not rates:
-            return -along, certain
-        task, motor = (np.array([pair[side] for pair in rates]) for side in (0, 1))
-        return axes.by_weights(task, motor) - along, certain
+            along, certain = of(felt)
+        else:
+            along, certain = tangents.by_dimensions(felt, self._dimensions.placements)
+        slopes = -along[:, : axes.squares.shape[1]]
+        if load is not None:
+            slopes = slopes - along[:, axes.squares.shape[1] :]
+        rates = [] if self._dimensions is None else self._dimensions.metric_rates(self._question.kind)
+        if rates:
+            task, motor = (np.array([pair[side] for pair in rates]) for side in (0, 1))
+            slopes = slopes + axes.by_weights(task, motor, load)
+        return slopes, certain
 
 
 def _alone(squares: Stack) -> NDArray[np.bool_]:

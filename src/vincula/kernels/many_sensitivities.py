@@ -38,12 +38,21 @@ class ManyAxes:
     motors: Stack
     chosen: Vector
 
-    def by_weights(self, task: Stack, motor: Stack) -> Stack:
-        """Derivatives by p rates of both metrics (p x t x t, p x r x r), everything else held: N x e x p."""
+    def by_weights(self, task: Stack, motor: Stack, load: Stack | None) -> Stack:
+        """Derivatives by p rates of both metrics, everything else held: N x e x p.
+
+        Args:
+            task: p x t x t.
+            motor: p x r x r.
+            load: Structural wrenches that shadows see of their slopes, N x e x t; None where there are none.
+        """
         seen = self.chosen * self.tasks
         of_tasks = np.einsum("nea,pab,neb->nep", seen, task, seen)
         of_motors = np.einsum("nea,pab,neb->nep", self.motors, motor, self.motors)
-        return np.asarray(of_tasks - self.squares[..., None] * of_motors)
+        found = of_tasks - self.squares[..., None] * of_motors
+        if load is not None:
+            found = found - np.einsum("nea,pab,neb->nep", load, task, self.tasks)
+        return np.asarray(found)
 
 
 class ManySensitivities:
@@ -105,8 +114,11 @@ class ManySensitivities:
         size = self.counts.mobility - self.counts.passive_redundancy
         return np.asarray(pairs @ np.swapaxes(self.kernel @ pseudo_inverse(block, size), 1, 2))
 
-    def dyads(self, axes: ManyAxes, task: Metric, motor: Metric) -> tuple[Stack, Stack]:
+    def dyads(self, axes: ManyAxes, task: Metric, motor: Metric) -> tuple[Stack, Stack, Stack | None]:
         """Forces y (N x e x m) and motions k (N x e x n) whose -y^T dA k are derivatives of semi-axes.
+
+        Shadows of active forces beside structural wrenches have two terms: the second ones come after all
+        the first ones, and with them the wrenches N x e x t that they see of their slopes.
 
         Args:
             axes: The semi-axes.
@@ -117,7 +129,9 @@ class ManySensitivities:
         t, m = (twist, rate) if axes.kind == "kinematic" else (1.0 / twist, 1.0 / rate)
         if axes.kind == "internal force":
             t = self.row
-        on_task = 2.0 * t * axes.chosen * ((axes.chosen * axes.tasks) @ task.matrix)
+        on_task = 2.0 * axes.chosen * ((axes.chosen * axes.tasks) @ task.matrix)
+        beside = self._beside(axes, task, on_task)
+        on_task = t * (on_task if beside is None else on_task - beside[2] @ task.matrix)
         on_motor = -2.0 * axes.squares[..., None] * m * (axes.motors @ motor.matrix)
         tasks, motors = axes.tasks / t, axes.motors / m
         if axes.kind == "internal force":
@@ -125,12 +139,34 @@ class ManySensitivities:
             pull = on_task - on_motor @ np.swapaxes(self.matrix[:, :, : self.active], 1, 2)
             rank = held.shape[2] - self.counts.passive_redundancy - self.counts.indeterminacy
             rest = pull @ np.swapaxes(pseudo_inverse(held, rank), 1, 2)
-            return tasks, np.concatenate([on_motor, rest], axis=-1)
+            return tasks, np.concatenate([on_motor, rest], axis=-1), None
         pair, on_pair = (np.concatenate(sides, axis=-1) for sides in ((motors, tasks), (on_motor, on_task)))
         if axes.kind == "kinematic":
-            return self.pulled(self._without_passive(on_pair)), self.lifted(pair)
+            return self.pulled(self._without_passive(on_pair)), self.lifted(pair), None
         # An equilibrium e is orthogonal to every motion: de = -N^+T dN^T e.
-        return -self.pulled(self._without_passive(pair)), self.lifted(on_pair)
+        forces, motions = -self.pulled(self._without_passive(pair)), self.lifted(on_pair)
+        if beside is None:
+            return forces, motions, None
+        more = np.concatenate([forces, beside[0]], axis=1), np.concatenate([motions, beside[1]], axis=1)
+        return *more, beside[2]
+
+    def _beside(self, axes: ManyAxes, task: Metric, on_task: Stack) -> tuple[Stack, Stack, Stack] | None:
+        """What structural wrenches add, see `Sensitivities`: forces, motions, and the wrenches."""
+        count = self.counts.structural_wrenches
+        if axes.kind not in ("active force", "dual force") or count <= 0 or axes.chosen.all():
+            return None
+        twist = self._factors[1]
+        left, values, right = np.linalg.svd(self.kernel[:, self.active + self.passive :])
+        reached = len(twist) - count
+        structural = left[:, :, reached:] / twist[:, None]
+        triangle = np.linalg.qr(task.factor @ structural)[1]
+        structural = structural @ np.linalg.inv(triangle)
+        load = (on_task @ structural) @ np.swapaxes(structural, 1, 2)
+        way = ((axes.tasks @ task.matrix) / twist) @ left[:, :, :reached]
+        motions = ((way / values[:, None, :reached]) @ right[:, :reached]) @ np.swapaxes(self.kernel, 1, 2)
+        idle = np.zeros((*load.shape[:2], self.active))
+        pairs = np.concatenate([idle, twist * load], axis=-1)
+        return self.pulled(self._without_passive(pairs)), motions, load
 
     def forces_of(self, forces: Stack, motions: Stack) -> FrameForces:
         """What y^T A k feels as frames move, for scaled forces (N x e x m) and motions (N x e x n)."""

@@ -190,3 +190,12 @@ def test_bad_questions() -> None:
         compiled.gradient(None, "kinematic.smallest", wrt="motor")
     with pytest.raises(vc.ModelError, match="how it is built"):
         compiled.gradient(None, "kinematic.smallest", wrt=["width"])
+
+
+def test_forces_beside_structural_wrenches_whose_metric_leaves_components_out() -> None:
+    weights = vc.Weights(wrench=[1.0, 1.0, 0.0])
+    found = vc.compile(example("five-bar"), weights=weights).gradient(
+        None, "active_force.condition:translation"
+    )
+    assert not found.smooth
+    assert "weights leave components out" in found.reason()

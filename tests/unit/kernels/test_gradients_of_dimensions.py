@@ -240,7 +240,7 @@ def weighed(p: float = 0.0) -> Mechanism:
 
 
 def test_weights_that_change_with_a_dimension() -> None:
-    indices = ("kinematic.yoshikawa_volume:translation", "kinematic.condition:translation")
+    indices = ("kinematic.yoshikawa_volume:translation", "active_force.isotropy:translation")
     check(weighed, weighed().configuration({"a": 0.3, "b": 1.1}), None, (KINEMATIC, FORCE, *indices))
     check(weighed, weighed().configuration({"a": 0.3, "b": 1.1}), vc.Weights(), indices)
 
