@@ -86,19 +86,14 @@ def gradient(
     batch = batch_of(compiled.mechanism, "configuration", configurations, None, settings)
     found = evaluate_gradients(compiled, batch, asked, wrt, names)
     shape, entries = batch.shape, asked.shape
-    places = {(*_place(lane, shape), *entry): words for (lane, *entry), words in found.reasons.items()}
     return Gradient(
         quantity,
         names,
         found.values.reshape((*shape, *entries)),
         found.slopes.reshape((*shape, *entries, len(names))),
         found.smooth.reshape((*shape, *entries)),
-        places,
+        found.reasons.reshaped((*shape, *entries)),
     )
-
-
-def _place(lane: int, shape: tuple[int, ...]) -> tuple[int, ...]:
-    return tuple(int(k) for k in np.unravel_index(lane, shape)) if shape else ()
 
 
 def _asked(compiled: CompiledMechanism, name: str) -> Quantity:

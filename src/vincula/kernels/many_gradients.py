@@ -19,6 +19,7 @@ from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights
 from vincula.arrays import Matrix
 from vincula.errors import VinculaError
 from vincula.kernels.dimensions import Dimensions, dimensions_at
+from vincula.kernels.gradient_reasons import GradientReasons
 from vincula.kernels.gradients_one_by_one import SMOOTH, gradient_at
 from vincula.kernels.inputs import Batch
 from vincula.kernels.many_derivatives import ManyDerivatives, Question
@@ -49,20 +50,24 @@ class Gradients:
     values: NDArray[np.float64]
     slopes: NDArray[np.float64]
     smooth: NDArray[np.bool_]
-    reasons: dict[tuple[int, ...], str]
+    reasons: GradientReasons
 
     @staticmethod
     def none(lanes: int, entries: tuple[int, ...], names: int) -> Gradients:
         """Nothing known yet."""
         shape = (lanes, *entries)
         return Gradients(
-            np.full(shape, np.nan), np.full((*shape, names), np.nan), np.zeros(shape, dtype=bool), {}
+            np.full(shape, np.nan),
+            np.full((*shape, names), np.nan),
+            np.zeros(shape, dtype=bool),
+            GradientReasons(shape),
         )
 
     def refuse(self, lanes: Sequence[int] | NDArray[np.intp], words: str) -> None:
         """Give a reason for all entries of some lanes."""
-        entries = self.values.shape[1:]
-        self.reasons.update({(int(lane), *entry): words for lane in lanes for entry in np.ndindex(*entries)})
+        for lane in lanes:
+            for entry in np.ndindex(*self.values.shape[1:]):
+                self.reasons[int(lane), *entry] = words
 
 
 def evaluate_gradients(
