@@ -20,6 +20,7 @@ from vincula.maps.stacked_rows import Stack
 from vincula.maps.variables import Plane
 from vincula.mechanism.closure_problem import ClosureProblem
 from vincula.mechanism.closure_solver import Limits
+from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.closure_values import Mask
 from vincula.mechanism.watching import Watch, locked
 
@@ -101,6 +102,7 @@ class Branch:
         freedoms: Dimension of the kernels.
         ranks: Generic ranks of the watched blocks.
         kept: Generic rank of every watch's rows of the kernel; of the Jacobian for the loops.
+        seen: Rates of motors, member and what is held, by number.
         followed: The watch that must not vanish for the held values to be followed.
     """
 
@@ -116,6 +118,7 @@ class Branch:
         self.plane, self.problem, self.watching, self.bounds = plane, problem, watching, bounds
         self.equations = StackedProblem(problem)
         self.held = np.flatnonzero(held & ~locked(problem))
+        self.seen = _seen(plane, problem, self.held)
         self._moving = np.flatnonzero(~locked(problem))
         self.ranks = ranks
         self.freedoms = len(self._moving) - ranks[0]
@@ -159,9 +162,31 @@ class Branch:
             return _signs(turned + np.diag(still))
         kept, rows = self.kept[k], self.rows[k]
         left, _, right = np.linalg.svd(ones.kernel[:, rows])
-        carried = others.kernel @ (others.kernel.swapaxes(1, 2) @ ones.kernel)
+        carried = others.kernel @ self._carrying(ones, others)
         block = left[:, :, :kept].swapaxes(1, 2) @ carried[:, rows] @ right[:, :kept].swapaxes(1, 2)
         return _signs(block)
+
+    def _carrying(self, ones: Points, others: Points) -> Stack:
+        """n x freedoms x freedoms: motions of others that are most like those of ones.
+
+        Where something is always free (a rod that spins) motors and member alone are compared: how far it
+        has spun is different on every way, and turns the axes of its ball with it.
+        """
+        if self.kept[self.followed] == self.freedoms:
+            return np.asarray(others.kernel.swapaxes(1, 2) @ ones.kernel)
+        mine, theirs = ones.kernel[:, self.seen], others.kernel[:, self.seen]
+        left, values, right = np.linalg.svd(theirs)
+        kept = self.kept[self.followed]
+        safe = np.maximum(values[:, :kept], 1e-300)
+        back = (right[:, :kept].swapaxes(1, 2) / safe[:, None, :]) @ left[:, :, :kept].swapaxes(1, 2)
+        return np.asarray(back @ mine)
+
+    def differences(self, states: Stack, others: Stack) -> Vector:
+        """How far states are apart, without what is always free."""
+        steps = self.equations.steps_between(states, others)
+        if self.kept[self.followed] < self.freedoms:
+            steps = steps[:, self.seen]
+        return np.asarray(np.linalg.norm(steps, axis=1))
 
     def held_inverse(self, points: Points) -> Stack:
         """n x freedoms x held: the shortest motion of the kernel for rates that are held."""
@@ -284,6 +309,14 @@ class Branch:
                 if not len(going):
                     break
         return states, residual
+
+
+def _seen(plane: Plane, problem: ClosureProblem, held: Numbers) -> Numbers:
+    """Rates of the motors, of the member, and of what is held."""
+    where = problem.variables
+    seen = {int(k) for k in held} | {where.column[motor] for motor in plane.mechanism.active}
+    member = where.columns_of.get(MEMBER, slice(0, 0))
+    return np.array(sorted(seen | set(range(member.start, member.stop))), dtype=np.intp)
 
 
 def _applied(matrices: Stack, vectors: Stack) -> Stack:

@@ -34,7 +34,7 @@ class Curve:
     """A singular curve, or a piece of the edge of a sheet.
 
     Attributes:
-        kind: Kind of singularity, `limit` or `lost`.
+        kind: Kind of singularity, `limit`, `turn` (of the variables alone) or `lost`.
         edge: Whether the sheet ends there.
         points: n x 2 values of the variables, in order along the curve; one where a measure only touches
             zero.

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from vincula.errors import MissingExtraError
 from vincula.kernels.evaluation import STATUS_NAMES
-from vincula.maps.loci import KINDS
+from vincula.maps.loci import KINDS, TURN
 
 if TYPE_CHECKING:
     import xarray
 
     from vincula.maps.map_data import SingularityMap
 
-KIND_CODES: Final = ("", *KINDS, "limit", "lost")
+KIND_CODES: Final = ("", *KINDS, "limit", TURN, "lost")
 """Kinds of curves in the order of their codes in a data set; the first is none."""
 
 

@@ -38,6 +38,8 @@ STRAIGHT: Final = 0.75
 """Smallest cosine between tangents at both ends of a chord."""
 SHORTEST: Final = 1e-7
 """A chord shorter than this share of its line is not taken: the branch is lost there."""
+BEYOND: Final = 1e-9
+"""What ends a line farther than this share behind its end does not end it."""
 EndKind = Literal["fold", "limit", "reached", "lost"]
 
 
@@ -47,7 +49,8 @@ class End:
 
     Attributes:
         kind: What ends it; `reached` if nothing does before its end.
-        share: Share of the line.
+        share: Share of the line; of a line whose end is reached that of the last state known, before it or
+            behind it.
         state: The state there.
         beside: Regular states before it, and behind it where one is known.
     """
@@ -168,6 +171,8 @@ class _Lines:
         for k, lane in enumerate(stop.lanes):
             begin, known = stop.one.points.states[k], self.found[lane]
             end = End(kind, float(shares[k]), states[k], (begin, stop.two.points.states[k]))
+            if end.share > 1.0 + BEYOND:
+                end = End("reached", float(stop.one.shares[k]), begin, (begin,))
             if known is None or self._is_before(end, known, begin):
                 self.found[lane] = end
 

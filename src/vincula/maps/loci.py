@@ -30,8 +30,13 @@ KINDS: Final[tuple[SingularityKind, ...]] = ("platform free", "motors without au
 """Kinds of singularity, as `mechanism.singularities` names them."""
 ZERO: Final = 1e-8
 """A measure that changes its sign and stays above this has jumped: that is no zero."""
-LOST: Final = 1e-4
+LOST: Final = 1e-3
 """Where what is followed is farther from singular than this and still stops, the branch was lost."""
+
+SINGULAR: Final = 1e-6
+"""At a fold another watched measure below this is zero too."""
+TURN: Final = "turn"
+"""Kind of an edge where the variables turn back and the mechanism is not singular."""
 
 Edge = tuple[int, int]
 """Two neighbours of the grid by their numbers, the smaller first."""
@@ -43,7 +48,7 @@ class Crossing:
     Args:
         sheet: The sheet it is on.
         values: The two variables there [m, rad].
-        kind: Kind of singularity, `limit` (a joint limit), or `lost`.
+        kind: Kind of singularity, `limit` (a joint limit), `turn` (of the variables alone), or `lost`.
         state: The state there.
         words: What is singular, or which joint is at its limit; a singularity is told when it is asked for.
         watch: The block that is singular; -1 where none is.
@@ -178,26 +183,24 @@ def zeros_on(sheet: Sheet, k: int, begin: Points, here: Stack, there: Stack) -> 
 
 
 def _kinds(sheet: Sheet, points: Points, k: int) -> list[str]:
-    """Kinds of singularities of a watched block; empty where only a closer look can tell.
-
-    The lost direction is known at once where one motion alone is free; what is always free (a leg that
-    spins) must be told from it otherwise.
-    """
+    """Kinds of singularities of a watched block; empty where several motions are lost at once."""
     branch = sheet.branch
     if k == 0:
         return ["internal"] * len(points)
-    if branch.kept[k] < branch.freedoms or not len(points):
-        return [""] * len(points)
+    if not len(points):
+        return []
+    kept = branch.kept[k]
     _, values, right = np.linalg.svd(points.kernel[:, branch.rows[k]])
-    lost = (points.kernel @ right[:, -1, :, None])[:, :, 0]
-    single = values[:, -2] > 1e-4 if values.shape[1] > 1 else np.ones(len(points), dtype=bool)
+    # What is always free moves neither member nor motors: it may stay among what is lost.
+    lost = points.kernel @ right[:, kept - 1 :].swapaxes(1, 2)
+    single = values[:, kept - 2] > 1e-4 if kept > 1 else np.ones(len(points), dtype=bool)
     where = sheet.problem.variables
     everything = np.arange(where.columns)
     if branch.watching[k].name == "motors locked":
         kind, columns = "platform free", everything[where.columns_of.get(MEMBER, slice(0, 0))]
     else:
         kind, columns = "motors without authority", everything[[where.column[m] for m in sheet.motors]]
-    part = np.linalg.norm(lost[:, columns], axis=1)
+    part = np.linalg.norm(lost[:, columns], axis=(1, 2))
     plain = single & ((part > 100.0 * SHARE) | (part < 0.01 * SHARE))
     return [
         "" if not sure else kind if size > SHARE else "internal"
@@ -243,7 +246,8 @@ def edge_points(sheet: Sheet, stops: Sequence[End], here: Stack, there: Stack) -
     """
     k = sheet.branch.followed
     points = sheet.branch.points(np.array([stop.state for stop in stops]))
-    result = []
+    turning, names = _turning(sheet, points), " and ".join(v.name for v in sheet.plane.variables)
+    result: list[Crossing] = []
     for stop, kind, size, a, b in zip(
         stops, _kinds(sheet, points, k), points.smallest[:, k], here, there, strict=True
     ):
@@ -254,10 +258,33 @@ def edge_points(sheet: Sheet, stops: Sequence[End], here: Stack, there: Stack) -
         elif size > LOST:
             words = "the branch could not be followed any further"
             result.append(Crossing(sheet, values, "lost", stop.state, words=words, inside=a))
-        else:
+        elif (other := turning[len(result)]) is None:
             told = kind or singularity(sheet, stop.state, k, stop.beside).kind
             result.append(Crossing(sheet, values, told, stop.state, watch=k, beside=stop.beside, inside=a))
+        elif other < 0:
+            words = f"{names} turn back here: nothing is singular, other variables go on"
+            result.append(Crossing(sheet, values, TURN, stop.state, words=words, inside=a))
+        else:
+            told = singularity(sheet, stop.state, other, stop.beside).kind
+            result.append(
+                Crossing(sheet, values, told, stop.state, watch=other, beside=stop.beside, inside=a)
+            )
     return result
+
+
+def _turning(sheet: Sheet, points: Points) -> list[int | None]:
+    """Whether it is the choice of variables alone that ends a sheet at folds.
+
+    Returns:
+        For every point None where what is followed is a block of its own (motors, or member, locked); else
+        the watched block that is singular there, -1 if none is.
+    """
+    branch = sheet.branch
+    if sheet.plane.of_member or branch.watching[branch.followed].name == "motors locked":
+        return [None] * len(points)
+    size = np.where(np.arange(len(branch.watching)) == branch.followed, np.inf, points.smallest)
+    lowest = size.argmin(axis=1)
+    return [int(k) if row[k] < SINGULAR else -1 for row, k in zip(size, lowest, strict=True)]
 
 
 def _limit_words(sheet: Sheet, state: Vector) -> str:

@@ -24,6 +24,8 @@ ROUNDS: Final = 14
 """Most looks about one minimum, each nearer than the last."""
 NEARER: Final = 0.35
 """Radius of a look as a share of the one before."""
+FALLS: Final = 0.9
+"""A minimum is followed while a look leaves at most this share of it."""
 RAYS: Final = 24
 """Directions in which a loop is sought from inside."""
 REACH: Final = 2.0
@@ -90,6 +92,7 @@ def _minima(
     best = [(float(sheet.smallest[n, k]), sheet.states[n]) for n in numbers]
     inside: list[tuple[Vector, Points] | None] = [None] * len(numbers)
     radius = np.full(len(numbers), 0.6)
+    last = np.full(len(numbers), np.inf)
     going = np.arange(len(numbers))
     for _ in range(ROUNDS):
         if not len(going):
@@ -115,7 +118,9 @@ def _minima(
             low = int(values.argmin())
             centres[j], best[j] = at[low], (float(values[low]), both.states[low])
             radius[j] *= NEARER
-            if values[low] > 0.0 and radius[j] > 1e-8:
+            before, last[j] = last[j], float(values[low])
+            # A minimum that no longer falls is none that reaches zero.
+            if 0.0 < values[low] <= FALLS * before:
                 still.append(j)
         going = np.array(still, dtype=int)
     return centres, best, inside

@@ -24,7 +24,9 @@ BEND: Final = 0.15
 """A bend sharper than this between two pieces of a curve is looked at more closely [rad]."""
 SHORT: Final = 0.02
 """Pieces shorter than this share of the grid's step are not halved."""
-EXTENSIONS: Final = 8
+FOLDED: Final = 1e-7
+"""What is followed is zero at a fold to this accuracy."""
+EXTENSIONS: Final = 5
 """How often an open end of a curve is carried on, by half as much wherever it cannot be."""
 CIRCLE: Final = 12
 """Corners of the circle about a single point of a curve."""
@@ -34,37 +36,45 @@ LAST: Final = 0.02
 """Steps shorter than this share of the grid's step carry nothing on."""
 
 
-def refined(sheet: Sheet, chain: Chain, k: int | None) -> Chain:
-    """A chain with more points: one between any two, and more where it bends.
+def refined(sheet: Sheet, found: list[Chain], k: int | None) -> list[Chain]:
+    """Chains with more points: one between any two, and more where they bend.
 
     Args:
         sheet: The sheet.
-        chain: The chain.
+        found: The chains.
         k: Number of the watched block; None along the edge of the sheet.
     """
-    points = list(chain.crossings)
-    todo = np.ones(len(points) if chain.closed else len(points) - 1, dtype=bool)
+    lines = [list(chain.crossings) for chain in found]
+    todo = [_pieces(line, chain) for line, chain in zip(lines, found, strict=True)]
     for _ in range(LEVELS):
-        where = np.flatnonzero(todo)
-        if len(points) < 2 or not len(where):
+        where = [(c, int(j)) for c, pieces in enumerate(todo) for j in np.flatnonzero(pieces)]
+        if not where:
             break
-        ones, twos = [points[j] for j in where], [points[(j + 1) % len(points)] for j in where]
+        ones = [lines[c][j] for c, j in where]
+        twos = [lines[c][(j + 1) % len(lines[c])] for c, j in where]
         middles = _across(sheet, ones, twos, k) if k is not None else _outwards(sheet, ones, twos)
-        merged: list[Crossing] = []
-        new = dict(zip(where.tolist(), middles, strict=True))
-        fresh: list[bool] = []
-        for j, point in enumerate(points):
-            merged.append(point)
-            middle = new.get(j)
-            fresh.append(middle is not None)
+        new: list[dict[int, Crossing]] = [{} for _ in lines]
+        for (c, j), middle in zip(where, middles, strict=True):
             if middle is not None:
-                merged.append(middle)
-                fresh.append(True)
-        points = merged
-        todo = np.array(fresh[: len(points) if chain.closed else len(points) - 1]) & _bends(
-            sheet, points, chain
-        )
-    return Chain(tuple(points), chain.closed)
+                new[c][j] = middle
+        for c, chain in enumerate(found):
+            merged: list[Crossing] = []
+            fresh: list[bool] = []
+            for j, point in enumerate(lines[c]):
+                here = [point, new[c][j]] if j in new[c] else [point]
+                merged += here
+                fresh += [len(here) > 1] * len(here)
+            lines[c] = merged
+            todo[c] = _bends(sheet, merged, chain) & np.array(
+                fresh[: len(_pieces(merged, chain))], dtype=bool
+            )
+    return [Chain(tuple(line), chain.closed) for line, chain in zip(lines, found, strict=True)]
+
+
+def _pieces(points: list[Crossing], chain: Chain) -> Mask:
+    """One truth value for every piece between neighbours of a chain."""
+    count = len(points) if chain.closed else len(points) - 1
+    return np.ones(max(count, 0), dtype=bool)
 
 
 def extended(sheet: Sheet, found: list[Chain], k: int) -> list[Chain]:
@@ -122,7 +132,14 @@ def _grown(sheet: Sheet, chain: Chain, k: int) -> Chain:
         sheet.points_at(numbers), sheet.places(numbers), ring, halvings=HALVINGS
     )
     found = zeros_on(sheet, k, begin, ring[good], np.roll(ring, -1, axis=0)[good])
-    near = [point for point in found if point is not None and point.kind == centre.kind]
+    low, high = (np.array([f(axis) for axis in sheet.grid]) for f in (np.min, np.max))
+    near = [
+        point
+        for point in found
+        if point is not None
+        and point.kind == centre.kind
+        and bool(((point.values >= low) & (point.values <= high)).all())
+    ]
     if not near:
         return chain
     first = near[0]
@@ -133,6 +150,8 @@ def _grown(sheet: Sheet, chain: Chain, k: int) -> Chain:
 
 def _bends(sheet: Sheet, points: list[Crossing], chain: Chain) -> Mask:
     """For every piece of a chain, whether it bends at one of its ends and is long enough to be halved."""
+    if len(points) < 2:
+        return np.zeros(0, dtype=bool)
     places = np.array([point.values for point in points]) / sheet.steps
     ways = np.roll(places, -1, axis=0) - places
     lengths = np.linalg.norm(ways, axis=1)
@@ -203,7 +222,10 @@ def _outwards(sheet: Sheet, ones: list[Crossing], twos: list[Crossing]) -> list[
         return result
     stops = ends(sheet.branch, begin, here[good], there[good])
     points = edge_points(sheet, stops, here[good], there[good])
-    for (j, _, _), stop, point in zip([lines[k] for k in np.flatnonzero(good)], stops, points, strict=True):
-        if stop.kind in ("fold", "limit"):
+    sizes = sheet.branch.points(np.array([stop.state for stop in stops])).smallest[:, sheet.branch.followed]
+    found = [lines[k][0] for k in np.flatnonzero(good)]
+    for j, stop, point, size in zip(found, stops, points, sizes, strict=True):
+        # In a corner of two edges the mechanism stops short of the fold.
+        if stop.kind == "limit" or (stop.kind == "fold" and size <= FOLDED):
             result[j] = point
     return result

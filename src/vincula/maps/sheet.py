@@ -82,7 +82,9 @@ class Sheet:
         here = self.problem.equations(self._start)
         ranks, generic = self._generic(here, [w.columns for w in watching])
         self._refuse_freedom(generic, ~held & ~locked(self.problem))
-        self.branch = Branch(plane, self.problem, watching, ranks, held, bounds)
+        chosen = self._chosen(watching, ranks, held)
+        watching = tuple(watching[k] for k in chosen)
+        self.branch = Branch(plane, self.problem, watching, [ranks[k] for k in chosen], held, bounds)
         self._refuse_standstill(generic[0])
         size = self.shape[0] * self.shape[1]
         self.reached: Mask = np.zeros(size, dtype=bool)
@@ -175,8 +177,7 @@ class Sheet:
         good, found = self.branch.advance(
             self.points_at(pairs[:, 0]), self.places(pairs[:, 0]), self.places(pairs[:, 1]), halvings=HALVINGS
         )
-        apart = self.branch.equations.steps_between(found.states, self.states[pairs[good, 1]])
-        good[good] = np.linalg.norm(apart, axis=1) < 1e-6
+        good[good] = self.branch.differences(found.states, self.states[pairs[good, 1]]) < 1e-6
         return good
 
     def configuration(self, state: Vector) -> Configuration:
@@ -232,15 +233,37 @@ class Sheet:
         self.states[numbers], self.smallest[numbers] = found.states, found.smallest
 
     def _watching(self, held: Mask) -> tuple[Watch, ...]:
-        """The watched blocks; the point stands for a member that counts as its reference point."""
+        """All blocks that may be watched, with the reference point locked among them where it may count."""
         known = watches(self.problem, self.motors, held)
         if not self.plane.point_counts:
             return known
+        point = self._point_locked()
+        return (*(w for w in known if not np.array_equal(w.columns, point)), Watch("held", point))
+
+    def _point_locked(self) -> Mask:
+        """Everything but the position of the reference point."""
         start = self.problem.variables.columns_of[MEMBER].start
         free = ~locked(self.problem)
         free[start : start + self.plane.mechanism.space.translations] = False
-        rest = [watch for watch in known if watch.name != "member locked"]
-        return (*(w for w in rest if not np.array_equal(w.columns, free)), Watch("held", free))
+        return free
+
+    def _chosen(self, watching: tuple[Watch, ...], ranks: list[int], held: Mask) -> list[int]:
+        """Which blocks to watch: the reference point stands for the member if all its motions move the point.
+
+        Where they do not (a foot that tilts about the point) the whole member is watched.
+        """
+        followed = ~held & ~locked(self.problem)
+        where = {watch.name: k for k, watch in enumerate(watching)}
+        if not self.plane.point_counts or "member locked" not in where:
+            return list(range(len(watching)))
+        loose = {k: int(watch.columns.sum()) - ranks[k] for k, watch in enumerate(watching)}
+        member, point = where["member locked"], len(watching) - 1
+        for_good = point if loose[point] == loose[member] else member
+        return [
+            k
+            for k, watch in enumerate(watching)
+            if k not in (member, point) or k == for_good or np.array_equal(watch.columns, followed)
+        ]
 
     def _generic(self, here: Equations, blocks: list[Mask]) -> tuple[list[int], tuple[Vector, Equations]]:
         """Ranks of blocks, and a state that has them; at a singular start those of a point beside it."""

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vincula.errors import ClosureError, ModelError, listing
-from vincula.kernels.compiled import compile_mechanism
-from vincula.kernels.evaluation import NO_CLOSURE
+from vincula.kernels.compiled import CompiledMechanism, compile_mechanism
+from vincula.kernels.evaluation import NO_CLOSURE, OK
 from vincula.maps.curves import GRID, Chain, Curve, chains, curves_of, distances, outline
 from vincula.maps.loci import KINDS, crossings, outer_edge, singularity
 from vincula.maps.map_data import MapSheet, SingularityMap, size_of
@@ -29,6 +29,8 @@ Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done, and how much there is."""
 SAME: Final = 1e-6
 """Configurations whose joint points agree to this times L are one."""
+REGULAR: Final = 1e-3
+"""Where all watched measures are above this, no rank is in question that was not at other such points."""
 
 
 def map_over(
@@ -95,30 +97,48 @@ def map_over(
 def _finished(
     sheet: Sheet,
     begin: Configuration,
-    compiled: Any,
+    compiled: CompiledMechanism,
     asked: tuple[str, ...],
     progress: Progress | None,
     words: str,
 ) -> MapSheet:
     edge = outer_edge(sheet)
     reached = mask(sheet)
-    loops = [refined(sheet, chain, None) for chain in outline(edge, reached, sheet.grid)]
+    loops = refined(sheet, outline(edge, reached, sheet.grid), None)
     found = _singular(sheet) + _bounds(loops)
     if progress is not None:
         progress(f"{words}: curves", 1, 1)
     values = np.full((*sheet.shape, len(compiled.coordinates)), np.nan)
     values[reached] = sheet.branch.equations.configurations(sheet.states[sheet.reached], sheet.plane.start)
-    indices = {name: np.full(sheet.shape, np.nan) for name in asked}
-    status = np.full(sheet.shape, NO_CLOSURE, dtype=np.uint8)
-    result = compiled.evaluate(values[reached], asked)
-    status[reached] = result.status
-    for name in asked:
-        indices[name][reached] = result[name]
+    status, indices = _evaluated(sheet, compiled, values, asked)
     distance, nearest = _distances(sheet, found)
     lines = tuple(np.array([point.values for point in loop.crossings]) for loop in loops)
     return MapSheet(
         begin, reached, values, indices, status, tuple(found), distance, nearest, lines, _everywhere(sheet)
     )
+
+
+def _evaluated(
+    sheet: Sheet, compiled: CompiledMechanism, values: NDArray[np.float64], asked: tuple[str, ...]
+) -> tuple[NDArray[np.uint8], dict[str, NDArray[np.float64]]]:
+    """Status of every point, and the indices asked for."""
+    reached = mask(sheet)
+    status = np.full(sheet.shape, NO_CLOSURE, dtype=np.uint8)
+    indices = {name: np.full(sheet.shape, np.nan) for name in asked}
+    status[reached] = OK
+    near = reached.copy()
+    if not asked:
+        # Far from all curves ranks are as certain as at one such point.
+        far = (sheet.smallest > REGULAR).all(axis=1).reshape(sheet.shape) & reached
+        sample = values[far][:1]
+        if len(sample) and compiled.evaluate(sample, (), path="reference").status[0] == OK:
+            near &= ~far
+    if near.any():
+        result = compiled.evaluate(values[near], asked)
+        status[near] = result.status
+        for name in asked:
+            indices[name][near] = result[name]
+    return status, indices
 
 
 def _distances(sheet: Sheet, found: Sequence[Curve]) -> tuple[NDArray[np.float64], NDArray[np.str_]]:
@@ -156,8 +176,7 @@ def _singular(sheet: Sheet) -> list[Curve]:
             continue
         known = on_edges.get(watch.name, {})
         lines = [*chains(known, sheet.shape[1]), *hidden(sheet, k, known)]
-        lines = [refined(sheet, line, k) for line in lines]
-        for line in extended(sheet, lines, k):
+        for line in extended(sheet, refined(sheet, lines, k), k):
             found += curves_of(line, edge=False)
     return found
 

@@ -25,7 +25,7 @@ from vincula.maps.stacked_rows import (
 from vincula.mechanism.closure_problem import Block, ClosureProblem
 from vincula.mechanism.closure_values import unwound
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.joint_types import JointType, values_between
+from vincula.mechanism.joint_types import JointType, screws, values_between
 from vincula.mechanism.parts import GROUND, Joint
 from vincula.spatial.poses import Pose
 
@@ -42,6 +42,11 @@ class StackedProblem:
         self.mechanism = problem.mechanism
         where = problem.variables
         self._kinds = {joint.name: (kind, values) for joint, kind, values in where.joints}
+        self._screws = {
+            joint.name: screws(kind, joint.lead, joint.second_axis)
+            for joint, kind, _ in where.joints
+            if kind.axes
+        }
         in_tree = [joint for joint, _, _ in problem.steps]
         parts = [*in_tree, *where.joint.values(), *(block.part for block in problem.blocks)]
         self._first = {part.name: Fixed.of(part.frame_on_first) for part in parts}
@@ -93,11 +98,9 @@ class StackedProblem:
         poses, frames = self._poses(states)
         s = mechanism.space.translations
         twists = np.zeros((len(states), mechanism.space.dimension, problem.columns))
-        for joint, kind, _ in problem.variables.joints:
-            if kind.axes:
-                twists[:, :, problem.variables.columns_of[joint.name]] = twists_of_axes(
-                    kind, *frames[joint.name], joint.lead, joint.second_axis, problem.centre
-                )
+        for name, axes in self._screws.items():
+            columns = problem.variables.columns_of[name]
+            twists[:, :, columns] = twists_of_axes(axes, *frames[name], problem.centre)
         gaps = np.zeros((len(states), problem.rows))
         jacobian = np.zeros((len(states), problem.rows, problem.columns))
         for block in problem.blocks:

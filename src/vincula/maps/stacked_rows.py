@@ -6,6 +6,7 @@ A stack of frames is a pair of rotations (n x s x s) and positions (n x s).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -14,8 +15,9 @@ from numpy.typing import NDArray
 
 from vincula.arrays import Matrix, Vector
 from vincula.mechanism.closure_rows import Selection
-from vincula.mechanism.joint_types import JointType, screws
+from vincula.mechanism.joint_types import JointType, Screw
 from vincula.spatial.poses import Pose
+from vincula.spatial.twists import cross_rows
 
 Stack = NDArray[np.float64]
 """Numbers with the states along the first dimension."""
@@ -71,21 +73,19 @@ def moved_by(
     return rotation, position
 
 
-def twists_of_axes(
-    kind: JointType, first: Frames, second: Frames, lead: float, second_axis: Vector, point: Vector
-) -> Stack:
+def twists_of_axes(screws: Sequence[Screw], first: Frames, second: Frames, point: Vector) -> Stack:
     """n x d x axes twists at `point` of the second body relative to the first; see `axis_twists`."""
     arm = point - second[1]
     count, s = arm.shape
-    twists = np.zeros((count, 3 if s == 2 else 6, len(kind.axes)))
-    for k, screw in enumerate(screws(kind, lead, second_axis)):
+    twists = np.zeros((count, 3 if s == 2 else 6, len(screws)))
+    for k, screw in enumerate(screws):
         axis = (second if screw.on_second else first)[0] @ screw.axis
         if s == 2:
             twists[:, 0, k] = screw.slide * axis[:, 0] - screw.turn * arm[:, 1]
             twists[:, 1, k] = screw.slide * axis[:, 1] + screw.turn * arm[:, 0]
             twists[:, 2, k] = screw.turn
         else:
-            twists[:, :3, k] = screw.slide * axis + screw.turn * np.cross(axis, arm)
+            twists[:, :3, k] = screw.slide * axis + screw.turn * cross_rows(axis, arm)
             twists[:, 3:, k] = screw.turn * axis
     return twists
 
@@ -139,7 +139,7 @@ def products(one: Stack, two: Stack) -> Stack:
     a, v = one[:, :1], one[:, 1:]
     b, w = two[:, :1], two[:, 1:]
     real = a * b - np.sum(v * w, axis=1, keepdims=True)
-    product = np.concatenate([real, a * w + b * v + np.cross(v, w)], axis=1)
+    product = np.concatenate([real, a * w + b * v + cross_rows(v, w)], axis=1)
     return np.asarray(product / np.linalg.norm(product, axis=1, keepdims=True))
 
 
@@ -242,6 +242,6 @@ def _tilt_rates(axis: Stack) -> Stack:
     safe = np.where(sine == 0.0, 1.0, sine)
     turn = np.stack([-axis[:, 1], axis[:, 0], np.zeros(len(axis))], axis=1) / safe[:, None]
     beside = np.stack([-turn[:, 1], turn[:, 0]], axis=1) * (angle / safe)[:, None]
-    rates = turn[:, :2, None] * turn[:, None, :] + beside[:, :, None] * np.cross(axis, turn)[:, None, :]
+    rates = turn[:, :2, None] * turn[:, None, :] + beside[:, :, None] * cross_rows(axis, turn)[:, None, :]
     rates[sine == 0.0] = np.eye(3)[:2]
     return rates

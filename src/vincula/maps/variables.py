@@ -13,13 +13,17 @@ from vincula.arrays import Vector
 from vincula.errors import ModelError, UnknownNameError, listing
 from vincula.maps.stacked_rows import Stack, products, quaternions
 from vincula.mechanism.closure_problem import ClosureProblem
+from vincula.mechanism.closure_solver import solve
 from vincula.mechanism.closure_unknowns import MEMBER
 from vincula.mechanism.configuration import Configuration
-from vincula.mechanism.holding import Holding, holding
+from vincula.mechanism.holding import Holding, holding, problem_for
 from vincula.mechanism.kinematics import reference_position
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.modes import motors_at
 from vincula.mechanism.residuals import axis_linear, axis_values
+from vincula.mechanism.watching import decided, locked
+from vincula.numerics.lapack import svd
+from vincula.numerics.rank import decide_rank
 from vincula.spatial.poses import Pose, rotation_about
 
 POSITIONS: Final = ("x", "y", "z")
@@ -63,7 +67,9 @@ class Variable:
 class Plane:
     """Two variables of a mechanism, and what is held at a point of their plane.
 
-    Motors that are no variables stand where they start; so do the other coordinates of the member.  A member
+    Motors that are no variables stand where they start, as far as the variables leave them free to: over two
+    joints that follow the motors (pitch and roll of an ankle) the motors follow instead, and of redundant
+    motors some do.  The other coordinates of the member stand.  A member
     with no more freedoms than its reference point (a five-bar, a Delta, an arm of two joints in the plane) is
     looked at as that point: its orientation follows, and motors have authority if they move the point.
 
@@ -105,6 +111,7 @@ class Plane:
                 "member: choose two of a kind"
             )
         self.of_member = all(of_member)
+        self._standing = {} if self.of_member else self._motors_that_stand()
         self.whole_pose = self.of_member and self._freedom() > s
         self.point_counts = mechanism.reference is not None and self._freedom() <= s
 
@@ -122,7 +129,7 @@ class Plane:
         """What is held at a point of the plane."""
         asked = dict(zip(self.names, map(float, values), strict=True))
         if not self.of_member:
-            return holding(self.mechanism, {**self._motors, **asked})
+            return holding(self.mechanism, {**self._standing, **asked})
         point = self._point.copy()
         for k, name in enumerate(self._positions):
             point[k] = asked.get(name, point[k])
@@ -180,6 +187,33 @@ class Plane:
     @property
     def _coordinates(self) -> tuple[str, ...]:
         return (*self._positions, *self._turns) if self.mechanism.reference else ()
+
+    def _motors_that_stand(self) -> dict[str, float | Vector]:
+        """The motors beside the variables that are independent of them, in order, with their values."""
+        names = [name for name in self._motors if name not in self.names]
+        everything = holding(self.mechanism, {name: self._motors[name] for name in names})
+        also = [*self.mechanism.active, *(name for name in self.names if name not in self.mechanism.active)]
+        problem = problem_for(self.mechanism, everything, also)
+        free, place = ~locked(problem), problem.variables
+        state = problem.start(self.start)
+        rng = np.random.default_rng(0)
+        nudge = np.where(free, 0.02 * rng.uniform(-1.0, 1.0, problem.columns), 0.0)
+        # Beside the start: at a singular one more would seem to depend on each other than do.
+        beside = solve(problem, place.moved(state, nudge), free)
+        jacobian = beside.equations.jacobian[:, free]
+        _, values, right = svd(jacobian)
+        motions = np.zeros((problem.columns, right.shape[1]))
+        motions[free] = right
+        motions = motions[:, decided(jacobian, beside.residual, values).rank :]
+        rows = motions[[place.column[name] for name in self.names]]
+        standing: dict[str, float | Vector] = {}
+        for name in names:
+            columns = [place.column[name]] if name in place.column else place.columns_of[name]
+            more = np.vstack([rows, motions[columns]])
+            before, after = (decide_rank(block, name="variables of a map").rank for block in (rows, more))
+            if after - before == len(more) - len(rows):
+                rows, standing[name] = more, self._motors[name]
+        return standing
 
     def _freedom(self) -> int:
         """Dimension of the twists that the member can have at the start."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -45,8 +45,8 @@ CURVES: Final = {
     "motors without authority": CurveStyle("motors lose authority", "#0072B2", (5.0, 1.6), 1.5),
     "internal": CurveStyle("inner degeneracy", "#AA4499", (1.2, 1.2), 1.4),
     "limit": CurveStyle("joint limit", "#666666", (), 0.8),
+    "turn": CurveStyle("variables turn back", "#666666", (3.0, 1.2, 1.0, 1.2), 0.9),
     "lost": CurveStyle("edge of what was followed", "#bbbbbb", (), 0.8),
-    "incompatible": CurveStyle("edge of what was followed", "#bbbbbb", (), 0.8),
 }
 """Line styles: told apart by colour and by dashes."""
 
@@ -92,7 +92,11 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
     equal = found.units[0] == found.units[1] == "m"
     side = (paper - 0.65 - 0.55 * (columns - 1) - (0.85 if quantity else 0.15)) / columns
     tall = side * ((second.high - second.low) / (first.high - first.low) if equal else 0.9)
-    kinds = [kind for kind in CURVES if any(curve.kind == kind for s in sheets for curve in s.curves)]
+    kinds = [
+        kind for kind in CURVES
+        if any(curve.kind == kind for s in sheets for curve in s.curves)
+        or any(kind in s.everywhere for s in sheets)
+    ]  # fmt: skip
     labels = list(dict.fromkeys(CURVES[kind].label for kind in kinds))
     foot = 0.5 + 0.16 * len(labels)
     gap = 0.32 if rows == 1 else 0.62
@@ -114,7 +118,8 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
         unit = f"distance to the nearest\nsingular curve [{found.distance_unit}]"
         bar.set_label(unit if quantity == DISTANCE else _words(quantity))
         bar.outline.set_linewidth(0.4)
-    _legend(figure, kinds, size)
+    everywhere = {kind for s in sheets for kind in s.everywhere}
+    _legend(figure, kinds, everywhere, size)
     return figure
 
 
@@ -155,10 +160,12 @@ def _panel(
     image = axes.pcolormesh(first, second, shown, shading="nearest", rasterized=True, linewidth=0.0, **look)
     if sheet.outline:
         image.set_clip_path(_loops(sheet.outline), axes.transData)
+        for kind in sheet.everywhere:
+            axes.add_patch(_hatched(sheet.outline, CURVES[kind]))
     for kind in reversed(CURVES):
         for curve in sheet.curves:
             if curve.kind == kind:
-                _line(axes, curve, _joined(found, sheet, curve))
+                _line(axes, curve)
     if linkage:
         _linkage(axes, found, sheet)
     names = [f"{v.name} [{unit}]" for v, unit in zip(found.variables, found.units, strict=True)]
@@ -189,6 +196,15 @@ def _loops(outline: Sequence[Matrix]) -> Any:
     return Path(np.vstack(vertices), codes)
 
 
+def _hatched(outline: Sequence[Matrix], look: CurveStyle) -> Any:
+    """A region that is singular at every point."""
+    from matplotlib.patches import PathPatch
+
+    return PathPatch(
+        _loops(outline), facecolor="none", edgecolor=look.colour, hatch="////", linewidth=0.0, zorder=2
+    )
+
+
 def _spread(field: Matrix, reached: NDArray[np.bool_]) -> Matrix:
     """The field carried on one grid step beyond what is reached, so that colour goes up to the edge."""
     known = np.where(reached, field, np.nan)
@@ -201,25 +217,14 @@ def _spread(field: Matrix, reached: NDArray[np.bool_]) -> Matrix:
     return np.where(reached, known, mean)
 
 
-def _joined(found: SingularityMap, sheet: MapSheet, curve: Curve) -> Matrix:
-    """Points to draw: a closed curve back to its begin, one that runs into the edge up to the edge."""
-    if curve.closed:
-        return np.vstack([curve.points, curve.points[:1]])
-    edges = [other.points for other in sheet.curves if other.edge]
-    if curve.edge or not edges:
-        return curve.points
-    steps = np.array([axis[1] - axis[0] for axis in found.grid])
-    known, points = np.vstack(edges), [curve.points]
-    for end, place in ((curve.points[0], 0), (curve.points[-1], len(points))):
-        away = np.abs((known - end) / steps).max(axis=1)
-        if away.min() <= 1.5:
-            points.insert(0 if place == 0 else len(points), known[away.argmin()][None, :])
-    return np.vstack(points)
-
-
-def _line(axes: Axes, curve: Curve, points: Matrix) -> None:
+def _line(axes: Axes, curve: Curve) -> None:
+    """A curve on white; a point where a measure only touches zero as a dot."""
     look = CURVES[curve.kind]
     dashes: Any = (0, look.dashes) if look.dashes else "solid"
+    points = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
+    if len(points) == 1:
+        axes.plot(*points.T, "o", color=look.colour, markersize=3.5, markeredgecolor="white", zorder=4)
+        return
     axes.plot(points[:, 0], points[:, 1], color="white", linewidth=look.width + 1.2, zorder=3)
     axes.plot(points[:, 0], points[:, 1], color=look.colour, linewidth=look.width, linestyle=dashes, zorder=4)
 
@@ -244,14 +249,24 @@ def _linkage(axes: Axes, found: SingularityMap, sheet: MapSheet) -> None:
         artist.set_alpha(0.5 * FAINT if isinstance(artist, Polygon) else FAINT)
 
 
-def _legend(figure: Figure, kinds: Sequence[str], size: tuple[float, float]) -> None:
+def _legend(
+    figure: Figure, kinds: Sequence[str], everywhere: Collection[str], size: tuple[float, float]
+) -> None:
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
-    handles, seen = [], set()
+    handles: list[Any] = []
+    seen = set()
     for kind in kinds:
         look = CURVES[kind]
         if look.label not in seen:
             seen.add(look.label)
+            if kind in everywhere:
+                words = f"{look.label}, at every point"
+                handles.append(
+                    Patch(facecolor="none", edgecolor=look.colour, hatch="////", linewidth=0.0, label=words)
+                )
+                continue
             dashes: Any = (0, look.dashes) if look.dashes else "solid"
             handles.append(
                 Line2D([], [], color=look.colour, linewidth=look.width, linestyle=dashes, label=look.label)
