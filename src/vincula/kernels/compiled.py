@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
 import numpy as np
@@ -17,6 +18,7 @@ from vincula.kernels.plans import Plan, plan_for, refuse_bad_weights
 from vincula.kernels.quantities import Quantity, available, chosen, coordinates
 from vincula.kernels.reference_path import ReferencePath
 from vincula.kernels.runner import Runner
+from vincula.kernels.samples import general_ranks
 from vincula.kernels.variants import Builder, Variants
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.mechanism import Mechanism
@@ -59,6 +61,11 @@ class CompiledMechanism:
 
     def __repr__(self) -> str:
         return f"CompiledMechanism({self.mechanism.name}: {len(self.coordinates)} coordinates)"
+
+    @cached_property
+    def general_ranks(self) -> tuple[int, ...]:
+        """Ranks of the watched matrices away from singularities."""
+        return general_ranks(self.mechanism)
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -186,7 +193,7 @@ class CompiledMechanism:
 
         Args:
             configurations: (..., numbers) closed joint values in the order of `coordinates`; None: home.
-            quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, or an index of the kinematic one.
+            quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, an index, `singularity.distance`.
             wrt: `motors` (passive joints follow), `joints`, or names of parameters (motors stand still).
             parameters: Values of parameters, one a lane.
 

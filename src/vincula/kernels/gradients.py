@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vincula.errors import ModelError, UnknownNameError, listing
-from vincula.kernels.gradients_one_by_one import SMOOTH
+from vincula.kernels.gradients_one_by_one import DISTANCE, SMOOTH
 from vincula.kernels.inputs import batch_of
 from vincula.kernels.many_gradients import evaluate_gradients
 from vincula.kernels.quantities import Quantity
@@ -69,8 +69,8 @@ def gradient(
     Args:
         compiled: The mechanism.
         configurations: (..., numbers) joint values in the order of `coordinates`; None for home.
-        quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, or an index of it, such as
-            `kinematic.condition:translation`.
+        quantity: `<ellipsoid>.efficiencies`, `.smallest`, `.largest`, an index of it, such as
+            `kinematic.condition:translation`, or `singularity.distance`.
         wrt: `motors`, `joints`, or names of parameters.
         parameters: Values of parameters, one a lane.
 
@@ -101,10 +101,12 @@ def _asked(compiled: CompiledMechanism, name: str) -> Quantity:
     if name not in known:
         raise UnknownNameError("quantity", str(name), known)
     found = known[name]
+    if found.part == DISTANCE:
+        return found
     of_efficiencies = found.part in ("efficiencies", "smallest", "largest")
     if found.kind is None or not (of_efficiencies or found.part in SMOOTH):
         able = ["<ellipsoid>.efficiencies", "<ellipsoid>.smallest", "<ellipsoid>.largest"]
-        able += [f"<ellipsoid>.{index}" for index in SMOOTH]
+        able += [*(f"<ellipsoid>.{index}" for index in SMOOTH), DISTANCE]
         raise ModelError(f"{name} has no derivatives here: choose {listing(able)}")
     return found
 

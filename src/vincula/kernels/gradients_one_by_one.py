@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vincula.analysis.distance_sensitivity import distance_derivatives
 from vincula.analysis.ellipsoid import Ellipsoid
 from vincula.analysis.index_sensitivity import (
     NO_FINITE,
@@ -24,7 +25,7 @@ from vincula.analysis.sensitivity import Sensitivities
 from vincula.arrays import Matrix, Vector
 from vincula.errors import ClosureError, ModelError, VinculaError
 from vincula.kernels.dimensions import Dimensions
-from vincula.kernels.quantities import Quantity
+from vincula.kernels.quantities import WATCHED, Quantity
 from vincula.kernels.tangents import SEEN, Direction, Tangents
 from vincula.mechanism.mechanism import Mechanism
 from vincula.numerics.lapack import svd
@@ -42,6 +43,8 @@ SMOOTH: Final = {
     "smallest_singular_value": "smallest_singular_value",
 }
 """Indices with a derivative, by their names in quantities."""
+DISTANCE: Final = "singularity.distance"
+SPINS: Final = "passive joints can move by themselves, and the distance with them: ask for wrt='joints'"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,6 +83,8 @@ def gradient_at(
         tangents = Tangents(mechanism, q, model, found)
         if model.ledger.status == "doubtful":
             return [(d, Slope(np.full(len(names), np.nan), "a rank is doubtful here")) for d in derivatives]
+        if wrt != "joints" and asked.part == DISTANCE and model.ledger.summary.passive_redundancy > 0:
+            return [(d, Slope(np.full(len(names), np.nan), d.reason or SPINS)) for d in derivatives]
         if wrt == "joints":
             return [(d, _by_joints(mechanism, tangents, d, names)) for d in derivatives]
         if dimensions is None:
@@ -95,6 +100,8 @@ def gradient_at(
 
 
 def _derivatives(found: Sensitivities, compiled: CompiledMechanism, asked: Quantity) -> list[Derivative]:
+    if asked.part == DISTANCE:
+        return distance_derivatives(found, WATCHED, compiled.general_ranks)
     weights = resolved_weights(found.model, compiled.weights)
     if asked.kind is None:
         raise ModelError(f"{asked.name} has no derivative")

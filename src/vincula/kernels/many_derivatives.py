@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from vincula.analysis.distance_sensitivity import EQUAL_VALUES, NOTHING_TO_LOSE
 from vincula.analysis.ellipsoid import Class, Ellipsoid, Kind
 from vincula.analysis.index_sensitivity import (
     EQUAL,
@@ -26,14 +27,15 @@ from vincula.analysis.sensitivity import CLUSTER
 from vincula.arrays import Matrix
 from vincula.kernels.dimensions import Dimensions
 from vincula.kernels.evaluation import OK
-from vincula.kernels.gradients_one_by_one import SMOOTH
+from vincula.kernels.gradients_one_by_one import DISTANCE, SMOOTH
 from vincula.kernels.lane_quantities import INDEX_OF_AXES
 from vincula.kernels.many_sensitivities import ManyAxes, ManySensitivities
 from vincula.kernels.many_tangents import ManyTangents
 from vincula.kernels.plans import model_without_numbers
-from vincula.kernels.quantities import CLASS_CODES, KINDS, Quantity
+from vincula.kernels.quantities import CLASS_CODES, KINDS, WATCHED, Quantity
 from vincula.mechanism.many_frames import Stack
 from vincula.mechanism.many_matrices import ManyMatrices
+from vincula.mechanism.virtual_work import FrameForces
 from vincula.model import LinearModel
 from vincula.numerics.counts import SummaryCounts
 
@@ -79,6 +81,7 @@ class Question:
             those of motions.
         model: The linear model without numbers.
         probe: The ellipsoid of that, for its weights and components.
+        ranks: General ranks of the watched matrices, where distances from singularities are asked for.
     """
 
     asked: Quantity
@@ -86,20 +89,24 @@ class Question:
     source: Kind
     model: LinearModel
     probe: Ellipsoid
+    ranks: tuple[int, ...] = ()
 
     @staticmethod
     def of(compiled: CompiledMechanism, mechanism: Mechanism, asked: Quantity) -> Question:
-        """The question for one mechanism; `asked` belongs to an ellipsoid."""
+        """The question for one mechanism."""
         kind: Kind = asked.kind or "kinematic"
         model = model_without_numbers(mechanism)
         weights = resolved_weights(model, compiled.weights)
         shared = weights.dual and kind != "internal force"
         probe = ellipsoid_of_kind(kind, model, weights)
-        return Question(asked, kind, "kinematic" if shared else kind, model, probe)
+        ranks = compiled.general_ranks if asked.part == DISTANCE else ()
+        return Question(asked, kind, "kinematic" if shared else kind, model, probe, ranks)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """What has to be evaluated."""
+        if self.asked.part == DISTANCE:
+            return ("summary", "kinematic.classes")
         own, source = _WORDS[self.kind], _WORDS[self.source]
         parts = ("classes", "efficiencies", "task_directions", "motor_directions")
         found = ["summary", f"{own}.classes", f"{own}.efficiencies", *(f"{source}.{part}" for part in parts)]
@@ -170,6 +177,8 @@ class ManyDerivatives:
         counts = SummaryCounts(*(int(count) for count in arrays["summary"][0]))
         if not self._regular(counts):
             return None
+        if self._question.asked.part == DISTANCE:
+            return self._of_distance(values, counts)
         classes = self._question.classes(arrays)
         pairs = self._question.pairs(arrays)
         many = ManyMatrices(self._mechanism, values)
@@ -185,6 +194,8 @@ class ManyDerivatives:
         if self._wrt == "joints":
             return True
         motors = len(self._question.model.motors)
+        if self._question.asked.part == DISTANCE and counts.passive_redundancy:
+            return False
         driven = counts.mobility - counts.passive_redundancy
         return counts.indeterminacy == 0 < motors and (driven == motors or self._wrt != "motors")
 
@@ -252,17 +263,38 @@ class ManyDerivatives:
         reasons: dict[tuple[int, ...], str] = {(int(lane),): EQUAL_AXES for lane in np.flatnonzero(~single)}
         return Part(values, slopes, single, reasons, certain & clear)
 
+    def _of_distance(self, values: Matrix, counts: SummaryCounts) -> Part | None:
+        """Derivatives of distances from singularities; None where a rank is not the usual one."""
+        found = ManySensitivities(ManyMatrices(self._mechanism, values), self._question.model, counts)
+        ranks = self._question.ranks
+        if ranks != found.watched_ranks or not any(ranks):
+            return None
+        distances, forces, motions, alone = found.distances(WATCHED, ranks)
+        along, certain = self._by_everything(found, found.forces_of(forces, motions))
+        some = [k for k, rank in enumerate(ranks) if rank > 0]
+        slopes = np.full((*distances.shape, along.shape[-1]), np.nan)
+        slopes[:, some] = -(along[:, : len(some)] + along[:, len(some) :])
+        smooth = np.zeros(distances.shape, dtype=bool)
+        smooth[:, some] = alone
+        slopes[~smooth] = np.nan
+        reasons: dict[tuple[int, ...], str] = {
+            (int(lane), int(k)): EQUAL_VALUES if ranks[k] > 0 else NOTHING_TO_LOSE
+            for lane, k in np.argwhere(~smooth)
+        }
+        return Part(distances, slopes, smooth, reasons, certain)
+
+    def _by_everything(self, found: ManySensitivities, felt: FrameForces) -> tuple[Stack, NDArray[np.bool_]]:
+        """Rates of y^T A k by everything that is asked for, and where they are certain."""
+        tangents = ManyTangents(found)
+        if self._dimensions is not None:
+            return tangents.by_dimensions(felt, self._dimensions.placements)
+        return tangents.by_motors(felt) if self._wrt == "motors" else tangents.by_joints(felt)
+
     def _along(self, found: ManySensitivities, axes: ManyAxes) -> tuple[Stack, NDArray[np.bool_]]:
         """Derivatives of semi-axes by everything that is asked for, and where they are certain."""
         probe = self._question.probe
         forces, motions, load = found.dyads(axes, probe.task_weight, probe.motor_weight)
-        felt = found.forces_of(forces, motions)
-        tangents = ManyTangents(found)
-        if self._dimensions is None:
-            of = tangents.by_motors if self._wrt == "motors" else tangents.by_joints
-            along, certain = of(felt)
-        else:
-            along, certain = tangents.by_dimensions(felt, self._dimensions.placements)
+        along, certain = self._by_everything(found, found.forces_of(forces, motions))
         slopes = -along[:, : axes.squares.shape[1]]
         if load is not None:
             slopes = slopes - along[:, axes.squares.shape[1] :]

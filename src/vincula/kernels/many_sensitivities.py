@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from vincula.analysis.distance_sensitivity import columns_of, value_alone
 from vincula.analysis.ellipsoid import Kind
 from vincula.arrays import Vector
 from vincula.mechanism.many_frames import Stack
@@ -17,6 +19,7 @@ from vincula.mechanism.many_matrices import ManyMatrices, ordered
 from vincula.mechanism.virtual_work import FrameForces, Pairs
 from vincula.model import LinearModel
 from vincula.numerics.counts import SummaryCounts
+from vincula.numerics.ledger import MatrixName
 from vincula.numerics.metric import Metric
 
 
@@ -167,6 +170,59 @@ class ManySensitivities:
         idle = np.zeros((*load.shape[:2], self.active))
         pairs = np.concatenate([idle, twist * load], axis=-1)
         return self.pulled(self._without_passive(pairs)), motions, load
+
+    @property
+    def watched_ranks(self) -> tuple[int, ...]:
+        """Ranks of J_p, [J_a J_p], [J_p G^T] and [J_a J_p G^T]."""
+        counts, columns = self.counts, self.matrix.shape[2]
+        member = columns - self.active - self.passive
+        held = counts.passive_redundancy
+        return (
+            self.passive - held,
+            self.active + self.passive - held - counts.redundancy,
+            self.passive + member - held - counts.indeterminacy,
+            columns - counts.mobility,
+        )
+
+    def distances(
+        self, names: tuple[MatrixName, ...], ranks: tuple[int, ...]
+    ) -> tuple[Stack, Stack, Stack, NDArray[np.bool_]]:
+        """Smallest singular values of some matrices over the largest of A: `distance_sensitivity`.
+
+        Args:
+            names: The matrices.
+            ranks: Their ranks.
+
+        Returns:
+            N x names distances; for those of a rank above zero forces y and motions k of their derivatives
+            -y^T dA k, first all of the values and then all of the scale; and whether each is alone.
+        """
+        whole = np.linalg.svd(self.matrix)
+        lanes, columns = len(self.matrix), self.matrix.shape[2]
+        scale = whole[1][:, :1]
+        found = np.full((lanes, len(names)), np.inf)
+        forces, motions, alone = [], [], []
+        for k, (name, rank) in enumerate(zip(names, ranks, strict=True)):
+            if rank <= 0:
+                continue
+            part = columns_of(name, self.active, self.passive, columns)
+            left, values, right = np.linalg.svd(self.matrix[:, :, part])
+            found[:, k] = values[:, rank - 1] / scale[:, 0]
+            motion = np.zeros((lanes, columns))
+            motion[:, part] = right[:, rank - 1]
+            forces.append(-left[:, :, rank - 1] / scale)
+            motions.append(motion)
+            single = value_alone(values, rank - 1) & value_alone(whole[1], 0)
+            alone.append(single)
+        some = [k for k, rank in enumerate(ranks) if rank > 0]
+        of_scale = (found[:, some] / scale)[..., None] * whole[0][:, None, :, 0]
+        largest = np.broadcast_to(whole[2][:, None, 0], (lanes, len(some), columns))
+        return (
+            found,
+            np.concatenate([np.stack(forces, axis=1), of_scale], axis=1),
+            np.concatenate([np.stack(motions, axis=1), largest], axis=1),
+            np.array(alone, dtype=bool).T,
+        )
 
     def forces_of(self, forces: Stack, motions: Stack) -> FrameForces:
         """What y^T A k feels as frames move, for scaled forces (N x e x m) and motions (N x e x n)."""

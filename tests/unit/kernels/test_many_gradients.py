@@ -24,6 +24,7 @@ QUANTITIES = [
     "kinematic.condition:translation",
     "kinematic.isotropy:rotation",
     "dual_force.isotropy:translation",
+    "singularity.distance",
 ]
 
 
