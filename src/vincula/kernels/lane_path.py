@@ -28,8 +28,8 @@ from vincula.kernels.memory import aligned, doubles
 from vincula.kernels.plans import model_without_numbers
 from vincula.kernels.quantities import Quantity
 from vincula.kernels.reference_path import Arrays
-from vincula.kernels.samples import sample_configurations
 from vincula.mechanism.mechanism import Mechanism
+from vincula.mechanism.samples import sample_configurations
 from vincula.weights import Quantity as Weighed
 from vincula.weights import Weights
 

@@ -16,6 +16,7 @@ import numpy as np
 from vincula.analysis.ellipsoid import Class, Kind
 from vincula.analysis.indices import Part
 from vincula.errors import UnknownNameError, listing
+from vincula.mechanism.branch_groups import SIDES, Side, branch_groups
 from vincula.mechanism.mechanism import Mechanism
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.numerics.ledger import MatrixName
@@ -135,6 +136,7 @@ def available(mechanism: Mechanism) -> dict[str, Quantity]:
         found += _of_ellipsoid(mechanism, word, kind)
     found += _of_counts()
     found += _of_closure(mechanism)
+    found += _of_branches(mechanism)
     return {quantity.name: quantity for quantity in found}
 
 
@@ -232,3 +234,18 @@ def _of_closure(mechanism: Mechanism) -> list[Quantity]:
         Quantity("bounds", "how far every kinematic efficiency may be off within the uncertainties", "bounds",
                  "kinematic", dims=("kinematic entry",), labels=((),), shape=(entries,)),
     ]  # fmt: skip
+
+
+SIDE_OF: Final[dict[str, Side]] = {f"branch.{side}": side for side in SIDES}
+"""What is locked, by quantity."""
+
+
+def _of_branches(mechanism: Mechanism) -> list[Quantity]:
+    groups = branch_groups(mechanism)
+    zero = {"assembly": "the member is free with the motors locked", "working": "motors lose authority"}
+    found = []
+    for name, side in SIDE_OF.items():
+        words = f"signed measure of every group of loops, + as at home, 0 where {zero[side]}"
+        dim, names = f"{side} group", tuple(group.label for group in groups[side])
+        found.append(Quantity(name, words, name, dims=(dim,), labels=(names,), shape=(len(names),)))
+    return found

@@ -19,8 +19,10 @@ from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights
 from vincula.arrays import Vector
 from vincula.errors import ClosureError, VinculaError
 from vincula.kernels.evaluation import DOUBTFUL, FAILED, OK, OPEN
-from vincula.kernels.quantities import CLASS_CODES, SUMMARY, Quantity
+from vincula.kernels.quantities import CLASS_CODES, SIDE_OF, SUMMARY, Quantity
 from vincula.kernels.samples import distances
+from vincula.mechanism.branch_groups import Side
+from vincula.mechanism.branches import branch_measures
 from vincula.mechanism.configuration import Configuration
 from vincula.mechanism.kinematics import body_poses, reference_position
 from vincula.mechanism.mechanism import Mechanism
@@ -171,11 +173,16 @@ def _count(name: str) -> Callable[[Mechanism, Configuration, LinearModel], int]:
     return lambda _mechanism, _q, model: int(getattr(model.ledger.summary, name))
 
 
+def _branch(side: Side) -> Callable[[Mechanism, Configuration, LinearModel], Vector]:
+    return lambda mechanism, _q, model: branch_measures(mechanism, model, side)
+
+
 _OF_MODEL: Mapping[str, Callable[[Mechanism, Configuration, LinearModel], Any]] = {
     "counts": lambda _mechanism, _q, model: list(model.ledger.counts.as_dict().values()),
     "summary": lambda _mechanism, _q, model: list(model.ledger.summary.as_dict().values()),
     "closure.residual": lambda _mechanism, _q, model: model.uncertainty.residual,
     "reference.pose": lambda mechanism, q, _model: pose_of_reference(mechanism, q),
     **{name: _count(name) for name in SUMMARY},
+    **{name: _branch(side) for name, side in SIDE_OF.items()},
 }
 _NOT_OF_THE_MODEL = frozenset({"status", "configuration", "closure.iterations"})

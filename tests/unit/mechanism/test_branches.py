@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.unit.mechanism.linkages import circles_meet, five_bar, five_bar_o3, four_bar, joint_point
 
 import vincula as vc
-from vincula.mechanism.catalog import example
+from vincula.mechanism.branch_groups import branch_groups
+from vincula.mechanism.branches import branch_measures
+from vincula.mechanism.catalog import example, examples
+from vincula.mechanism.samples import sample_configurations
 from vincula.mechanism.singularities import singularities_at
 
 
@@ -42,6 +46,55 @@ def test_the_name_of_a_branch_tells_all_postures_apart() -> None:
         start = {name: rng.uniform(-3, 3) for name in home}
         names.add(str(mechanism.close(start, pose=there).branch.working))
     assert names == {"".join(signs) for signs in itertools.product("+-", repeat=3)}
+
+
+def test_measures_are_those_of_the_legs() -> None:
+    """Legs of a 3-RRR whose platform is held: arms of two bars, whose determinant is the area they span."""
+    mechanism = example("3rrr")
+    start = mechanism.close({"b1": 0.6, "b2": -0.9, "b3": 1.1})
+    model = mechanism.linearize(start)
+    scale = np.linalg.svd(np.hstack([model.scaled.active, model.scaled.passive, model.scaled.member]))[1][0]
+    for k, group in enumerate(branch_groups(mechanism)["working"]):
+        block = np.hstack([model.scaled.active, model.scaled.passive])[np.ix_(group.rows, group.columns)]
+        value = branch_measures(mechanism, model, "working")[k]
+        assert abs(value) == pytest.approx(np.linalg.svd(block)[1][-1] / scale, abs=1e-12)
+        points = [joint_point(mechanism, start, f"{letter}{k + 1}") for letter in "abc"]
+        home = [joint_point(mechanism, mechanism.home, f"{letter}{k + 1}") for letter in "abc"]
+        assert np.sign(value) == np.sign(_turn(*points) * _turn(*home))
+        assert abs(np.linalg.det(block)) * mechanism.length**2 == pytest.approx(
+            abs(_turn(*points)), abs=1e-12
+        )
+
+
+def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+    """Twice the signed area of a triangle."""
+    (x, y), (u, v) = (b - a)[:2], (c - b)[:2]
+    return float(x * v - y * u)
+
+
+@pytest.mark.parametrize("entry", examples(), ids=lambda entry: entry.name)
+def test_groups_of_the_structure_take_in_every_entry(entry: Any) -> None:
+    """No entry of the matrices, at any configuration, joins a group with anything outside."""
+    mechanism = example(entry.name)
+    motors, joints = len(mechanism.layout.active), len(mechanism.layout.columns)
+    columns = {"assembly": range(motors, joints + mechanism.space.dimension), "working": range(joints)}
+    for q in sample_configurations(mechanism):
+        matrix = mechanism.linearize(q).ledger.matrix("all")
+        for side, groups in branch_groups(mechanism).items():
+            inside = np.zeros(matrix.shape, dtype=bool)
+            for group in groups:
+                assert not inside[np.ix_(group.rows, group.columns)].any(), "groups do not overlap"
+                inside[np.ix_(group.rows, group.columns)] = True
+            assert not matrix[:, columns[side]][~inside[:, columns[side]]].any()
+
+
+def test_a_branch_of_a_mechanism_that_is_singular_at_home() -> None:
+    """Two sides meet there: it has neither sign, and those beside it have opposite ones."""
+    mechanism = _stretched(0.0)
+    assert mechanism.close().branch.assembly == "0"
+    assert branch_measures(mechanism, mechanism.linearize(), "assembly")[0] == 0.0
+    sides = [mechanism.close({"o2": -turn, "o3": 2.0 * turn}).branch.assembly for turn in (0.3, -0.3)]
+    assert sorted(sides) == ["+", "-"]
 
 
 def test_too_few_motors_leave_no_separate_modes() -> None:
