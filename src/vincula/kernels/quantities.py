@@ -155,6 +155,14 @@ def chosen(known: Mapping[str, Quantity], names: Iterable[str]) -> tuple[Quantit
     return tuple(found.values())
 
 
+def in_words(quantity: str) -> str:
+    """A quantity as a reader says it, in two lines: what it is, and of which ellipsoid and components."""
+    head, _, on = quantity.partition(":")
+    kind, _, index = head.rpartition(".")
+    of = ", ".join(part.replace("_", " ") for part in (kind, on) if part)
+    return f"{index.replace('_', ' ')}\n{of}" if of else index.replace("_", " ")
+
+
 def width(mechanism: Mechanism, kind: Kind) -> int:
     """Most entries that an ellipsoid of this mechanism can list at any configuration."""
     layout, d = mechanism.layout, mechanism.space.dimension

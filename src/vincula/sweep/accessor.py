@@ -63,6 +63,7 @@ class SweepAccessor:
         """
         self._refuse_other()
         array = self._array(name)
+        chosen: dict[str, Any] = {}
         for dim in [str(dim) for dim in array.dims if dim not in self._data["status"].dims]:
             wanted = labels.pop(dim, labels.pop(dim.split(" ")[-1], None))
             if wanted is None:
@@ -71,9 +72,44 @@ class SweepAccessor:
                     f"{dim.split(' ')[-1]}=0"
                 )
             array = array.sel({dim: wanted}) if isinstance(wanted, str) else array.isel({dim: int(wanted)})
+            chosen[dim] = array.coords[dim].item() if dim in array.coords else int(wanted)
         if labels:
             raise ModelError(f"{name} has no dimension {listing(labels)}")
-        return array.where(self.known)
+        return array.where(self.known).assign_attrs(array.attrs, chosen=chosen)
+
+    def on_branch(self, assembly: str = "", working: str = "") -> xarray.DataArray:
+        """Which points are on a branch: `data.where(data.vincula.on_branch("+"))`.
+
+        Args:
+            assembly: Wanted signs of `branch.assembly`, one a group in order: + as at home, - the other
+                side, 0 singular, ? no sign, * any.  Empty: not looked at.
+            working: The same for `branch.working`.
+
+        Raises:
+            UnknownNameError: The data set has not got the measures that are looked at.
+            ModelError: Not one sign a group, or a character that is none.
+        """
+        self._refuse_other()
+        found = self.known
+        for name, signs in (("branch.assembly", assembly), ("branch.working", working)):
+            if signs:
+                found = found & self._has_signs(name, signs)
+        return found
+
+    def _has_signs(self, name: str, signs: str) -> xarray.DataArray:
+        array = self._array(name)
+        dim = str(array.dims[-1])
+        if len(signs) != array.sizes[dim] or set(signs) - set("+-0?*"):
+            groups = listing(array[dim].values) if dim in array.coords else str(array.sizes[dim])
+            raise ModelError(
+                f"signs {signs!r} do not fit {name}: give one of + - 0 ? * for each of its groups ({groups})"
+            )
+        here = xarray.ones_like(self.known)
+        for k, sign in enumerate(signs):
+            one = array.isel({dim: k}, drop=True)
+            if sign != "*":
+                here = here & {"+": one > 0.0, "-": one < 0.0, "0": one == 0.0, "?": one.isnull()}[sign]
+        return here
 
     def _array(self, name: str) -> xarray.DataArray:
         for found, array in self._data.data_vars.items():
@@ -107,7 +143,10 @@ class SweepAccessor:
         logarithmic: bool = False,
         **labels: Any,
     ) -> Any:
-        """A map of an index over two variables, with singularities as curves and what is unknown in grey.
+        """A map of an index over two variables, with singular curves and what is unknown in grey.
+
+        Singular curves need `branch.assembly` and `branch.working` in the data set; without them, borders
+        between regions where the counts of motions differ are drawn, if counts are there.
 
         Args:
             name: The quantity.
@@ -166,9 +205,13 @@ class SweepAccessor:
         at: Mapping[str, float] | None = None,
         ax: Any = None,
     ) -> Any:
-        """Curves over two variables between which the counts of motions differ, or loops cannot be closed.
+        """Singular curves over two variables by type, and the edge of what is reached.
 
-        Drawn between grid points: as exact as the grid is fine (`vincula map` locates them).
+        The curves are the zeros of `branch.assembly` (the member becomes free with the motors locked) and
+        `branch.working` (motors lose authority), interpolated between grid points: as exact as the grid is
+        fine (`vincula map` locates them).  Where a measure jumps to another sign instead of passing zero,
+        because the next point is on another branch, a dotted line says so.  A data set without these
+        quantities shows the borders where the counts of motions differ, and says what to ask for.
 
         Args:
             x: Variable to the right.
@@ -180,7 +223,7 @@ class SweepAccessor:
             The axes.
 
         Raises:
-            ModelError: No grid of two variables or more.
+            ModelError: No grid of two variables or more, or nothing that tells of singularities.
             MissingExtraError: matplotlib is not installed.
         """
         from vincula.sweep.plots import draw_singularities

@@ -1,8 +1,9 @@
-"""Pictures of sweeps: maps of an index, curves, and the borders between regions of other mobility."""
+"""Pictures of sweeps: maps of an index, curves along one variable, singular curves over two."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,13 +11,16 @@ import xarray
 
 from vincula.errors import MissingExtraError, ModelError, UnknownNameError
 from vincula.kernels.evaluation import NO_CLOSURE, OPEN
+from vincula.kernels.quantities import in_words
 from vincula.sweep.layout import NOT_DONE
+from vincula.sweep.singular_lines import Plane, draw_lines, missing_measures
 
 if TYPE_CHECKING:
     from vincula.sweep.accessor import SweepAccessor
 
 _UNREACHED: Final = "#d9d9d9"
-_BORDER: Final = "#b2182b"
+_LONGEST: Final = 36
+"""Characters of a line beside a colour bar or an axis."""
 _FOUND: Final = {OPEN: "open", NO_CLOSURE: "does not close", NOT_DONE: "not computed"}
 
 
@@ -33,7 +37,7 @@ def draw_map(
 ) -> Any:
     """A map of an index over two variables; see `SweepAccessor.map`."""
     x, y = _pair(data, x, y)
-    ax = _axes(ax)
+    ax, own = _axes(ax)
     array = _at(accessor.index(name, **labels), (x, y), at).transpose(y, x)
     values = np.asarray(array.values, dtype=float)
     values = np.where(np.isfinite(values), values, np.nan)
@@ -51,7 +55,7 @@ def draw_map(
     mesh = ax.pcolormesh(across, up, values, shading="nearest", cmap="viridis", norm=norm, rasterized=True)
     bar = ax.figure.colorbar(mesh, ax=ax)
     bar.set_label(_titled(array, name))
-    _borders(data, x, y, at, ax)
+    _explain(ax, own, draw_lines(_plane(accessor, data, x, y, at), ax))
     _name_axes(data, x, y, ax)
     _note_missing(data, x, y, at, ax)
     return ax
@@ -69,7 +73,7 @@ def draw_curve(
     """An index along one variable; see `SweepAccessor.curve`."""
     dims = [str(dim) for dim in data["status"].dims]
     chosen = _known(x, dims) if x is not None else dims[-1]
-    ax = _axes(ax)
+    ax, _ = _axes(ax)
     array = _at(accessor.index(name, **labels), (chosen,), at)
     values = np.asarray(array.values, dtype=float)
     ax.plot(_shown(data, chosen), np.where(np.isfinite(values), values, np.nan), lw=1.5)
@@ -86,49 +90,45 @@ def draw_singularities(
     at: Mapping[str, float],
     ax: Any,
 ) -> Any:
-    """Borders between regions of other mobility; see `SweepAccessor.singularities`."""
+    """Singular curves by type and the edge of what is reached; see `SweepAccessor.singularities`."""
     x, y = _pair(data, x, y)
-    ax = _axes(ax)
-    known = _at(accessor.known, (x, y), at).transpose(y, x)
+    missing = missing_measures(data)
+    if missing and not {"counts", "summary"} & set(data.data_vars):
+        raise ModelError(f"nothing here tells of singularities: {missing}")
+    ax, own = _axes(ax)
+    plane = _plane(accessor, data, x, y, at)
     ax.set_facecolor(_UNREACHED)
     from matplotlib.colors import ListedColormap
 
-    shown = np.where(known.values, 1.0, np.nan)
-    ax.pcolormesh(_shown(data, x), _shown(data, y), shown, shading="nearest", cmap=ListedColormap(["white"]))
-    _borders(data, x, y, at, ax)
+    shown = np.where(plane.cut(plane.known).values, 1.0, np.nan)
+    ax.pcolormesh(plane.across, plane.up, shown, shading="nearest", cmap=ListedColormap(["white"]))
+    _explain(ax, own, draw_lines(plane, ax), missing)
+    if own and data[x].attrs.get("units") == data[y].attrs.get("units") == "m":
+        ax.set_aspect("equal")
     _name_axes(data, x, y, ax)
     _note_missing(data, x, y, at, ax)
     return ax
 
 
-def _borders(data: xarray.Dataset, x: str, y: str, at: Mapping[str, float], ax: Any) -> None:
-    """Lines between neighbours whose counts of motions differ, where the data set holds counts."""
-    regions = _regions(data, x, y, at)
-    if regions is None:
+def _plane(accessor: SweepAccessor, data: xarray.Dataset, x: str, y: str, at: Mapping[str, float]) -> Plane:
+    points = {str(dim) for dim in data["status"].dims}
+
+    def cut(array: xarray.DataArray) -> xarray.DataArray:
+        others = [str(dim) for dim in array.dims if dim not in points]
+        return _at(array, (x, y, *others), at).transpose(y, x, ...)
+
+    return Plane(data, accessor.known, cut, _shown(data, x), _shown(data, y))
+
+
+def _explain(ax: Any, own: bool, handles: list[Any], note: str = "") -> None:
+    """Say what the lines are: below axes of our own, inside those of others."""
+    if not handles and not note:
         return
-    across, up = _edges(_shown(data, x)), _edges(_shown(data, y))
-    from matplotlib.collections import LineCollection
-
-    lines = []
-    for i, j in np.argwhere(regions[:, 1:] != regions[:, :-1]):
-        lines.append([(across[j + 1], up[i]), (across[j + 1], up[i + 1])])
-    for i, j in np.argwhere(regions[1:, :] != regions[:-1, :]):
-        lines.append([(across[j], up[i + 1]), (across[j + 1], up[i + 1])])
-    if lines:
-        ax.add_collection(LineCollection(lines, colors=_BORDER, linewidths=1.2, label="mobility changes"))
-
-
-def _regions(data: xarray.Dataset, x: str, y: str, at: Mapping[str, float]) -> Any:
-    """One number for every combination of counts and of reachable or not; None without counts."""
-    for name in ("counts", "summary"):
-        if name not in data:
-            continue
-        array = _at(data[name], (x, y, str(data[name].dims[-1])), at)
-        rows = array.transpose(y, x, ...).values
-        flat = rows.reshape(-1, rows.shape[-1])
-        _, numbers = np.unique(flat, axis=0, return_inverse=True)
-        return numbers.reshape(rows.shape[:2])
-    return None
+    look = {"fontsize": "small", "title_fontsize": "small", "title": fill(note, 60) or None}
+    if own:
+        ax.figure.legend(handles=handles, loc="outside lower left", frameon=False, **look)
+    else:
+        ax.legend(handles=handles, loc="best", framealpha=0.9, **look)
 
 
 def _note_missing(data: xarray.Dataset, x: str, y: str, at: Mapping[str, float], ax: Any) -> None:
@@ -188,25 +188,25 @@ def _name_axes(data: xarray.Dataset, x: str, y: str, ax: Any) -> None:
 
 
 def _titled(array: xarray.DataArray, name: str) -> str:
+    """A quantity in words, which of its numbers, and their unit; no line too long for its place."""
+    what, _, of = in_words(name).partition("\n")
+    chosen = [_which(dim, value) for dim, value in array.attrs.get("chosen", {}).items()]
     unit = array.attrs.get("units", "")
-    return f"{name} [{unit}]" if unit else name
+    lines = [f"{what} [{unit}]" if unit else what, ", ".join([part for part in (of, *chosen) if part])]
+    return "\n".join(fill(line, _LONGEST) for line in lines if line)
 
 
-def _edges(values: Any) -> Any:
-    """Borders of the cells around grid values."""
-    if len(values) == 1:
-        return np.array([values[0] - 0.5, values[0] + 0.5])
-    middle = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate(
-        [[1.5 * values[0] - 0.5 * values[1]], middle, [1.5 * values[-1] - 0.5 * values[-2]]]
-    )
+def _which(dim: str, value: Any) -> str:
+    """Which number along a dimension: its name, or `entry 0`."""
+    return str(value) if isinstance(value, str) else f"{dim.rsplit(' ', maxsplit=1)[-1]} {value}"
 
 
-def _axes(ax: Any) -> Any:
+def _axes(ax: Any) -> tuple[Any, bool]:
+    """Axes to draw into, and whether they are made here."""
     if ax is not None:
-        return ax
+        return ax, False
     try:
         from matplotlib import pyplot
     except ImportError:
         raise MissingExtraError("matplotlib", "plot", "drawing a map") from None
-    return pyplot.subplots(layout="constrained")[1]
+    return pyplot.subplots(layout="constrained")[1], True

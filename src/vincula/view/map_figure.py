@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,6 +10,8 @@ from numpy.typing import NDArray
 
 from vincula.arrays import Matrix
 from vincula.errors import ModelError
+from vincula.kernels.quantities import in_words
+from vincula.maps.curve_styles import CURVES
 from vincula.maps.curves import Curve
 from vincula.maps.map_data import MapSheet, SingularityMap
 from vincula.spatial.space import PLANAR
@@ -28,27 +29,6 @@ FAINT: Final = 0.45
 DISTANCE: Final = "distance"
 """What a map can show without any index."""
 MOST_PANELS: Final = 8
-
-
-@dataclass(frozen=True, slots=True)
-class CurveStyle:
-    """How curves of one kind look."""
-
-    label: str
-    colour: str
-    dashes: tuple[float, ...]
-    width: float
-
-
-CURVES: Final = {
-    "platform free": CurveStyle("member free with motors locked", "#D55E00", (), 1.5),
-    "motors without authority": CurveStyle("motors lose authority", "#0072B2", (5.0, 1.6), 1.5),
-    "internal": CurveStyle("inner degeneracy", "#AA4499", (1.2, 1.2), 1.4),
-    "limit": CurveStyle("joint limit", "#666666", (), 0.8),
-    "turn": CurveStyle("variables turn back", "#666666", (3.0, 1.2, 1.0, 1.2), 0.9),
-    "lost": CurveStyle("edge of what was followed", "#bbbbbb", (), 0.8),
-}
-"""Line styles: told apart by colour and by dashes."""
 
 
 def plot_map(
@@ -116,7 +96,7 @@ def _figure(found: SingularityMap, quantity: str | None, linkage: bool, width: f
         box = ((paper - 0.72) / size[0], foot / size[1], 0.09 / size[0], tall / size[1])
         bar = figure.colorbar(image, cax=figure.add_axes(box))
         unit = f"distance to the nearest\nsingular curve [{found.distance_unit}]"
-        bar.set_label(unit if quantity == DISTANCE else _words(quantity))
+        bar.set_label(unit if quantity == DISTANCE else in_words(quantity))
         bar.outline.set_linewidth(0.4)
     everywhere = {kind for s in sheets for kind in s.everywhere}
     _legend(figure, kinds, everywhere, size)
@@ -276,11 +256,3 @@ def _legend(
             handles=handles, loc="lower left", bbox_to_anchor=(0.45 / size[0], 0.0), frameon=False,
             fontsize=6.5, handlelength=3.0, borderaxespad=0.2, labelspacing=0.25,
         )  # fmt: skip
-
-
-def _words(quantity: str) -> str:
-    """An index as a reader says it, in two lines: what it is, and of which ellipsoid and components."""
-    head, _, on = quantity.partition(":")
-    kind, _, index = head.rpartition(".")
-    of = ", ".join(part.replace("_", " ") for part in (kind, on) if part)
-    return f"{index.replace('_', ' ')}\n{of}" if of else index.replace("_", " ")
