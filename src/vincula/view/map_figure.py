@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vincula.arrays import Matrix
 from vincula.errors import ModelError
 from vincula.kernels.quantities import in_words
-from vincula.maps.curve_styles import CURVES
+from vincula.maps.curve_styles import CURVES, CurveStyle
 from vincula.maps.curves import Curve
 from vincula.maps.map_data import MapSheet, SingularityMap
 from vincula.spatial.space import PLANAR
