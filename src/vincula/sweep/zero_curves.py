@@ -18,7 +18,7 @@ from vincula.arrays import Matrix
 
 STEEPEST: Final = 4.0
 """How much more than beside it a measure may change between two points and still pass through zero: smooth
-ones change almost alike from step to step; on coarse grids, close to another singularity, up to four times."""
+ones change almost alike from step to step, on coarse grids close to another singularity up to four times."""
 
 _Edge = tuple[int, int, int]
 """Row and column of its first point, and whether it goes up (0) or to the right (1)."""
