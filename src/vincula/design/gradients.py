@@ -54,9 +54,8 @@ def _measured(
     if isinstance(measure, Index):
         from vincula.kernels.gradients_one_by_one import SMOOTH
 
-        word = measure.quantity.partition(":")[0]
-        kind, _, part = word.partition(".")
-        if part not in ("smallest", "largest") and not (kind == "kinematic" and part in SMOOTH):
+        part = measure.quantity.partition(":")[0].partition(".")[2]
+        if part not in ("smallest", "largest") and part not in SMOOTH:
             return None
         one = of(measure.quantity)
         if one is None:
