@@ -11,6 +11,7 @@ from vincula.arrays import Matrix, Vector
 from vincula.errors import VinculaError
 from vincula.kernels.evaluation import FAILED, OPEN
 from vincula.kernels.inputs import Batch
+from vincula.kernels.lane_branches import asks_for_branches, write_branches
 from vincula.kernels.lane_path import LaneWriters
 from vincula.kernels.lane_poses import poses_in_lanes
 from vincula.kernels.layouts import spectra_layout
@@ -47,6 +48,11 @@ def evaluate_in_lanes(
     values, constants, refused = geometry(writers, variants, batch, threads)
     unknown, opened = writers.evaluate(values, constants, arrays, threads)
     write_places(writers, values, constants, arrays)
+    if asks_for_branches(arrays):
+        ready = np.setdiff1d(np.arange(batch.lanes), np.concatenate([unknown, opened]), assume_unique=True)
+        unknown = np.sort(
+            np.concatenate([unknown, write_branches(writers.path, values, ready, arrays, threads)])
+        )
     for lanes in (unknown, opened):
         for quantity in plan.quantities:
             if quantity.name != "configuration" and not (

@@ -26,7 +26,7 @@ from vincula.kernels.lanes.targets import Tables, address
 from vincula.kernels.lanes.threads import pool
 from vincula.kernels.memory import aligned, doubles
 from vincula.kernels.plans import model_without_numbers
-from vincula.kernels.quantities import Quantity
+from vincula.kernels.quantities import SIDE_OF, Quantity
 from vincula.kernels.reference_path import Arrays
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.samples import sample_configurations
@@ -91,7 +91,7 @@ class LanePath:
         """How the quantities are written; or why only the reference path gives them."""
         found: list[tuple[str, Written]] = []
         for quantity in quantities:
-            if quantity.name in ("status", "configuration", "reference.pose"):
+            if quantity.name in ("status", "configuration", "reference.pose", *SIDE_OF):
                 continue
             listing = None if quantity.kind is None else self._listing(quantity.kind)
             if isinstance(listing, str):

@@ -11,6 +11,7 @@ from vincula.errors import ModelError
 from vincula.kernels.evaluation import Evaluation
 from vincula.kernels.inputs import Batch, Given
 from vincula.kernels.lane_batch import evaluate_in_lanes
+from vincula.kernels.lane_branches import asks_for_branches
 from vincula.kernels.lane_closing import SingleClosing, closed_start, evaluate_closed, lane_closing
 from vincula.kernels.lane_designs import evaluate_rows, rows_of
 from vincula.kernels.lane_path import (
@@ -81,7 +82,10 @@ class Runner:
         found = self._singles.get(plan)
         if found is None:
             writers = self.writers(plan, False)
-            found = False if isinstance(writers, str) else Single(writers, plan)
+            if isinstance(writers, str) or asks_for_branches(plan.by_name):
+                found = False
+            else:
+                found = Single(writers, plan)
             self._singles[plan] = found
         return found.at(values) if found else None
 
@@ -109,6 +113,8 @@ class Runner:
             general: Whether dimensions differ from lane to lane.
         """
         key = plan, general
+        if general and asks_for_branches(plan.by_name):
+            return "signs of branches are told against the home of every design"
         if key not in self._writers:
             with self._preparing:
                 if general not in self._paths:

@@ -62,3 +62,29 @@ def test_a_measure_goes_straight_through_zero() -> None:
     assert leg[0] > 0.05
     assert leg[-1] < -0.05
     assert np.abs(np.diff(leg, 2)).max() < 0.1 * np.abs(np.diff(leg)).max()
+
+
+@pytest.mark.parametrize("name", ["five-bar", "3rrr", "delta", "mixed", "stewart-spherical"])
+def test_lanes_are_the_reference_path(name: str) -> None:
+    """Square groups, groups with more rows than rank and with idle joints; any batch size and threads."""
+    pytest.importorskip("numba", reason="extra fast")
+    mechanism = vc.load(f"example:{name}")
+    compiled = vc.compile(mechanism)
+    rows = np.vstack([mechanism.home.flat, _random(mechanism, 8)])
+    lanes = compiled.evaluate(rows, BOTH, path="lanes")
+    reference = compiled.evaluate(rows, BOTH, path="reference")
+    assert lanes.status.tolist() == reference.status.tolist()
+    many = compiled.evaluate(np.tile(rows, (40, 1)), BOTH, path="lanes", threads=2)
+    for quantity in BOTH:
+        np.testing.assert_allclose(lanes[quantity], reference[quantity], rtol=0.0, atol=1e-10)
+        assert many[quantity].tobytes() == np.tile(lanes[quantity], (40, 1)).tobytes()
+        alone = np.array([compiled.at(row, BOTH)[quantity] for row in rows])
+        assert alone.tobytes() == lanes[quantity].tobytes()
+
+
+def test_designs_have_their_own_homes() -> None:
+    """Every design is compared with its own home, where it is on its own branch."""
+    compiled = vc.compile(vc.builder("example:stewart"))
+    found = compiled.evaluate(None, BOTH, parameters={"alpha": np.radians([1.0, 20.0])})
+    for quantity in BOTH:
+        assert (found[quantity] > 0.0).all()
