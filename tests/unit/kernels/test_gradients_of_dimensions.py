@@ -256,3 +256,29 @@ def test_what_cannot_close_says_so() -> None:
     found = vc.compile(varied(mechanism, seed=4)).gradient(None, KINEMATIC, wrt=["p"])
     assert not found.smooth.any()
     assert "do not close again" in found.reason(0)
+
+
+@pytest.mark.parametrize("member", ["coupler", "rocker"])
+def test_a_body_held_by_contacts_alone(member: str) -> None:
+    """The coupler of a four-bar is gripped, not hinged: it gets an implicit free joint to the ground."""
+    mechanism = vc.Mechanism.planar(
+        joints=[
+            vc.Revolute("a", "ground", "crank", at=(0, 0)),
+            vc.Revolute("d", "ground", "rocker", at=(1, 0)),
+        ],
+        contacts=[
+            vc.Contact("b", "crank", "coupler", "hard-finger", at=(0.1, 0.8), normal=(1, 0.2)),
+            vc.Contact("c", "rocker", "coupler", "hard-finger", at=(1.2, 1.0), normal=(-1, 0.4)),
+        ],
+        reference=vc.Reference(member, origin=(0.6, 1.2)),
+        active=["a"],
+    )
+    assert mechanism.implicit_joints
+    q = mechanism.close(motors={"a": 0.2})
+    check(varied(mechanism, seed=2), q, unit_weights(mechanism))
+
+
+def test_locked_joints() -> None:
+    mechanism = example("five-bar").with_lock(["o5"]).with_active(["o1"])
+    q = mechanism.close(motors={"o1": -0.15})
+    check(varied(mechanism, seed=2), q, unit_weights(mechanism))
