@@ -60,12 +60,22 @@ def ellipsoid_of_kind(
         found = printed_spectrum(model, kind, task, motor)
         listed = tuple(c for c in listed if c != "zero")
     else:
-        found = _found(kind, model, weights, task, motor)
+        found = spectrum_of_kind(kind, model, weights, task, motor)
     return _assembled(model, kind, listed, found, task, motor, weights.explicit, viewpoint, convention)
 
 
-def _found(kind: Kind, model: LinearModel, weights: Weights, task: Metric, motor: Metric) -> Spectrum:
-    """The spectrum of an ellipsoid; forces under reciprocal metrics share that of the motions."""
+def spectrum_of_kind(
+    kind: Kind, model: LinearModel, weights: Weights, task: Metric, motor: Metric
+) -> Spectrum:
+    """The spectrum of an ellipsoid; forces under reciprocal metrics share that of the motions.
+
+    Args:
+        kind: Which of the five.
+        model: The mechanism at one configuration.
+        weights: All weights.
+        task: Metric of the task side, `weights.metric(task_quantity(kind), model)`.
+        motor: Metric of the motor side.
+    """
     if kind == "internal force":
         return spectrum(internal_relation(model), task, motor)
     if kind == "kinematic":
@@ -159,7 +169,7 @@ def _assembled(
         task_weight=task,
         motor_weight=motor,
         set=VectorSet(components, units, axes, _unit(lines), doubt),
-        angle_error=min(float(np.pi / 2.0), doubt * _magnification(model, task, motor)),
+        angle_error=min(float(np.pi / 2.0), doubt * magnification(model, task, motor)),
         weights_chosen=chosen,
         viewpoint=viewpoint,
         convention=convention,
@@ -181,8 +191,8 @@ def _components(model: LinearModel, kind: Kind) -> tuple[tuple[str, ...], tuple[
     return model.wrench_components, model.wrench_units
 
 
-def _magnification(model: LinearModel, task: Metric, motor: Metric) -> float:
-    """How much scaling and weights may magnify an angle: the spread of their sizes."""
+def magnification(model: LinearModel, task: Metric, motor: Metric) -> float:
+    """How much scaling and weights may magnify an angle of a relation: the spread of their sizes."""
     length = model.length or 1.0
     spread = max(length, 1.0 / length)
     if task.unit and motor.unit:

@@ -130,7 +130,7 @@ def _one_geometry(writers: LaneWriters, variant: Mechanism | str) -> tuple[Vecto
     try:
         if not path.same_weights(variant):
             return nothing, variant.home.flat
-        return program.constants_of(variant, path.given_weights), variant.home.flat
+        return program.constants_of(variant, path.program_weights), variant.home.flat
     except VinculaError:
         return nothing, variant.home.flat
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final, get_args
 
@@ -17,24 +17,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vincula.analysis.ellipsoid import Kind
-from vincula.analysis.recipes import motor_quantity, resolved_weights, task_quantity
+from vincula.analysis.recipes import ellipsoid_of_kind, resolved_weights
 from vincula.arrays import Matrix
 from vincula.errors import MissingExtraError, VinculaError
+from vincula.kernels.lane_block import LaneBlock
 from vincula.kernels.lane_quantities import Listing, Writer, Written, written
-from vincula.kernels.lanes.outputs import CONSTANT, OPENED
+from vincula.kernels.lanes.outputs import CONSTANT, OPENED, UNKNOWN
 from vincula.kernels.lanes.targets import Tables, address
 from vincula.kernels.lanes.threads import pool
 from vincula.kernels.memory import aligned, doubles
 from vincula.kernels.plans import model_without_numbers
 from vincula.kernels.quantities import SIDE_OF, Quantity
 from vincula.kernels.reference_path import Arrays
+from vincula.kernels.samples import general_ranks
 from vincula.mechanism.mechanism import Mechanism
 from vincula.mechanism.samples import sample_configurations
 from vincula.weights import Quantity as Weighed
 from vincula.weights import Weights
 
 if TYPE_CHECKING:
+    from vincula.kernels.lane_spectra import LaneRelation, RelationName
     from vincula.kernels.lanes.program import LaneProgram
+    from vincula.model import LinearModel
 
 CHUNK: Final = 4096
 """Most lanes that a thread computes at a time: threads take chunks as they get ready."""
@@ -58,25 +62,56 @@ class LanePath:
         weights: The weights of all lanes.
         given_weights: Weights given for all evaluations; None for those of the mechanism.
         mechanism: The mechanism.
+        model: Its matrices at a configuration with the ranks of the program.
+        program_weights: What the program is made with: `given_weights`, or others where kernels do not take
+            these; everything is then computed from motions.
+        replaced: Whether they are others.
     """
 
     program: LaneProgram
     weights: Weights
     given_weights: Weights | None
     mechanism: Mechanism
+    model: LinearModel
+    program_weights: Weights | None
+    replaced: bool
 
-    def _listing(self, kind: Kind) -> Listing | str:
-        """What an ellipsoid lists in lanes that are certain, or why lanes do not give it."""
-        if kind == "internal force":
-            return "internal forces are not computed in lanes"
-        if kind != "kinematic" and not self.weights.dual:
-            return "lanes give forces under reciprocal weights only"
-        model = model_without_numbers(self.mechanism)
-        sides = task_quantity(kind), motor_quantity(kind)
-        diagonals = [self.weights.metric(side, model).diagonal for side in sides]
-        if diagonals[0] is None or diagonals[1] is None:
-            return "weights are not diagonal"
-        return Listing.of(kind, self.program.counts, np.sqrt(diagonals[0]), np.sqrt(diagonals[1]))
+    def _listing(self, kind: Kind) -> Listing:
+        """What an ellipsoid lists in lanes that are certain; made once."""
+        if kind not in self._listings:
+            self._listings[kind] = self._listed(kind)
+        return self._listings[kind]
+
+    @cached_property
+    def _listings(self) -> dict[Kind, Listing]:
+        return {}
+
+    def _listed(self, kind: Kind) -> Listing:
+        from vincula.kernels.prepared_relations import relation_of
+
+        sample = ellipsoid_of_kind(kind, self.model, self.weights)
+        of_forces = kind != "internal force" and self.weights.dual
+        direct = not self.replaced and (kind == "kinematic" or of_forces)
+        return Listing(sample, direct, partial(self._relation, relation_of(kind)))
+
+    def _relation(self, name: RelationName) -> LaneRelation | str:
+        """One of the three relations ready for lanes, or why it is not; made once."""
+        from vincula.kernels.prepared_relations import lane_relation
+
+        if name not in self._relations:
+            self._relations[name] = lane_relation(self.mechanism, self.model, self.weights, name)
+        return self._relations[name]
+
+    @cached_property
+    def _distances(self) -> Writer:
+        """What writes `singularity.distance`."""
+        from vincula.kernels.lane_distances import distance_writer
+
+        return distance_writer(self.program, general_ranks(self.mechanism))
+
+    @cached_property
+    def _relations(self) -> dict[RelationName, LaneRelation | str]:
+        return {}
 
     def same_weights(self, variant: Mechanism) -> bool:
         """Whether a variant is weighed like the mechanism; lanes share their weights."""
@@ -93,12 +128,13 @@ class LanePath:
         for quantity in quantities:
             if quantity.name in ("status", "configuration", "reference.pose", *SIDE_OF):
                 continue
+            if quantity.name == "singularity.distance":
+                found.append((quantity.name, Written(writer=self._distances)))
+                continue
             listing = None if quantity.kind is None else self._listing(quantity.kind)
-            if isinstance(listing, str):
-                return f"{quantity.name}: {listing}"
             how = written(quantity, self.program.counts, self.program.twelve, listing)
             if isinstance(how, str):
-                return how
+                return f"{quantity.name}: {how}"
             found.append((quantity.name, how))
         return LaneWriters(self, tuple(found))
 
@@ -238,10 +274,17 @@ class LaneWriters:
             tables = Tables(np.array(self.parts(arrays), dtype=np.int64))
         program.deliver(values, constants, self.want, self.widest, tables, status, span=(first, last))
         if self.derived:
+            own = None if constants is None else constants[first:last]
             given = program.named(raw, status[first:last], self.want)
-            with np.errstate(all="ignore"):  # lanes that are not certain hold anything
-                for name, writer in self.derived:
-                    writer(given, arrays[name][first:last])
+            block = LaneBlock(program, given, values[first:last], own)
+            self.derive(block, {name: arrays[name][first:last] for name, _ in self.derived})
+            status[first:last][given.certain & ~block.sure] = UNKNOWN
+
+    def derive(self, block: LaneBlock, arrays: Arrays) -> None:
+        """Write what is computed from other results; lanes that turn out doubtful are marked in the block."""
+        with np.errstate(all="ignore"):  # lanes that are not certain hold anything
+            for name, writer in self.derived:
+                writer(block, arrays[name])
 
 
 def lane_path(mechanism: Mechanism, weights: Weights | None, *, general: bool) -> LanePath | str:
@@ -255,16 +298,21 @@ def lane_path(mechanism: Mechanism, weights: Weights | None, *, general: bool) -
     if not numba_is_installed():
         return "numba is not installed"
     from vincula.kernels.lanes.program import LaneProgram
+    from vincula.kernels.prepared_relations import weights_for_kernels
 
     samples = sample_configurations(mechanism)
     if not samples:
         return "no closed configuration was found to prepare lanes with"
+    nothing = model_without_numbers(mechanism)
+    used = resolved_weights(nothing, weights)
+    own, replaced = weights_for_kernels(nothing, weights, used)
+    models = [mechanism.linearize(q) for q in samples]
     try:
-        program = LaneProgram.prepare(mechanism, weights, samples, general=general)
+        program = LaneProgram.prepare(mechanism, own, models, general=general)
     except VinculaError as error:
         return str(error)
-    used = resolved_weights(model_without_numbers(mechanism), weights)
-    return LanePath(program, used, weights, mechanism)
+    model = next(m for m in models if m.ledger.status == "certain" and m.ledger.summary == program.counts)
+    return LanePath(program, used, weights, mechanism, model, own, replaced)
 
 
 @lru_cache(maxsize=1)

@@ -2,30 +2,31 @@
 
 Lanes give the finite efficiencies with their pairs of directions; how many infinite and zero ones there
 are is the same in all lanes that are certain.  So most numbers go straight from a kernel to their place in
-the result, and integers are the same in all lanes; a few quantities are computed from others, block by block.
+the result, and integers are the same in all lanes; the others are computed from these, block by block (see
+`lane_spectra` and `lane_indices`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vincula.analysis.ellipsoid import Kind
-from vincula.arrays import Vector
+from vincula.analysis.ellipsoid import Ellipsoid, Kind
 from vincula.kernels.lanes import outputs as o
 from vincula.kernels.quantities import CLASS_CODES, INDICES, NO_CLASS, SUMMARY, Quantity
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
-from vincula.numerics.subspaces import settled
 
 if TYPE_CHECKING:
-    from vincula.kernels.lanes.program import RawLanes
+    from vincula.kernels.lane_block import LaneBlock
+    from vincula.kernels.lane_spectra import LaneRelation
 
 Block = NDArray[Any]
-Writer = Callable[["RawLanes", Block], None]
+Writer = Callable[["LaneBlock", Block], None]
 """Writes one quantity of a block of lanes at its place."""
 
 
@@ -63,32 +64,44 @@ class Written:
     writer: Writer | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Listing:
-    """What an ellipsoid lists in every lane that is certain.
+    """What an ellipsoid lists in every lane that is certain: infinite, finite, zero, undefined efficiencies.
 
     Attributes:
-        kind: Which of the five.
-        infinite: Number of infinite efficiencies, which come first.
-        finite: Number of finite ones.
-        zero: Number of zeros, which come last.
-        roots: Roots of the weights of the task components.
-        motor_roots: Roots of the weights of the motors.
+        sample: The ellipsoid at a configuration that stands for all.
+        direct: Whether kernels give its finite efficiencies.
+        relation: What gives everything about it; or why lanes do not.
     """
 
-    kind: Kind
-    infinite: int
-    finite: int
-    zero: int
-    roots: Vector
-    motor_roots: Vector
+    sample: Ellipsoid
+    direct: bool
+    relation: Callable[[], LaneRelation | str]
 
-    @staticmethod
-    def of(kind: Kind, counts: SummaryCounts, roots: Vector, motor_roots: Vector) -> Listing:
-        """The listing of one ellipsoid (house page) by the summary counts."""
-        infinite = {"kinematic": counts.indeterminacy, "passive force": counts.structural_wrenches}
-        zero = {"kinematic": counts.redundancy, "active force": counts.internal_torques}
-        return Listing(kind, infinite.get(kind, 0), counts.coordinated, zero.get(kind, 0), roots, motor_roots)
+    @property
+    def kind(self) -> Kind:
+        """Which of the five ellipsoids."""
+        return self.sample.kind
+
+    @cached_property
+    def infinite(self) -> int:
+        """Number of infinite efficiencies, which come first."""
+        return self.sample.classes.count("infinite")
+
+    @cached_property
+    def finite(self) -> int:
+        """Number of finite ones."""
+        return self.sample.classes.count("finite")
+
+    @cached_property
+    def zero(self) -> int:
+        """Number of zeros."""
+        return self.sample.classes.count("zero")
+
+    @cached_property
+    def codes(self) -> list[int]:
+        """Classes of all entries."""
+        return [CLASS_CODES[name] for name in self.sample.classes]
 
     @property
     def last(self) -> int:
@@ -116,19 +129,6 @@ class Listing:
             return "twists" if part == "task_directions" else "rates"
         return "wrenches" if part == "task_directions" else "torques"
 
-    def values(self, raw: RawLanes) -> NDArray[np.float64]:
-        """Lanes x finite efficiencies, largest first."""
-        found = raw.efficiencies
-        return found if self.kind == "kinematic" else 1.0 / found[:, ::-1]
-
-    def directions(self, raw: RawLanes, side: str) -> NDArray[np.float64]:
-        """Lanes x finite x components: directions of the finite efficiencies."""
-        if self.kind == "kinematic":
-            found = raw.twists if side == "task_directions" else raw.rates
-        else:
-            found = raw.wrenches if side == "task_directions" else raw.torques
-        return np.empty(0) if found is None else found
-
 
 def written(
     quantity: Quantity, counts: SummaryCounts, twelve: TwelveCounts | None, listing: Listing | None
@@ -139,22 +139,32 @@ def written(
         quantity: The quantity.
         counts: The summary counts of all lanes that are certain.
         twelve: All twelve counts of lanes that are certain of them; None where none is.
-        listing: What its ellipsoid lists; None where lanes do not know it.
+        listing: What its ellipsoid lists; None for quantities of no ellipsoid.
     """
     if quantity.name == "counts" and twelve is not None:
         return Written(o.COUNTS, same=list(twelve.as_dict().values()))
-    if quantity.kind is None:
-        return _of_model(quantity, counts)
     if listing is None:
-        return f"{quantity.name} is not computed in lanes"
+        return _of_model(quantity, counts)
+    if quantity.part == "classes":
+        return Written(same=listing.codes + [NO_CLASS] * (quantity.shape[0] - len(listing.codes)))
     if quantity.part in INDICES:
-        return _of_index(quantity, listing)
+        from vincula.kernels.lane_indices import index_written  # numba is there: this is for lanes
+
+        return index_written(quantity, listing)
+    if not listing.codes:
+        size = int(np.prod(quantity.shape, dtype=np.int64))
+        return Written(pieces=(Piece("nothing", 0, size, 0),) if size else ())
+    straight = _straight(quantity, listing) if listing.direct else None
+    if straight is not None:
+        return straight
+    relation = listing.relation()
+    return relation if isinstance(relation, str) else _of_relation(quantity, listing, relation)
+
+
+def _straight(quantity: Quantity, listing: Listing) -> Written | None:
+    """What a kernel writes by itself; None for the rest."""
     if quantity.part in ("task_directions", "motor_directions"):
         return _of_directions(quantity, listing)
-    if quantity.part == "classes":
-        codes = [CLASS_CODES["infinite"]] * listing.infinite + [CLASS_CODES["finite"]] * listing.finite
-        codes += [CLASS_CODES["zero"]] * listing.zero
-        return Written(same=codes + [NO_CLASS] * (quantity.shape[0] - len(codes)))
     if quantity.part in ("smallest", "largest"):
         if not listing.finite:
             return Written(pieces=(Piece("nothing", 0, 1, 0),))
@@ -186,99 +196,55 @@ def _of_model(quantity: Quantity, counts: SummaryCounts) -> Written | str:
         return Written(same=-1)
     if quantity.name == "closure.residual":
         return Written(pieces=(Piece("residual", 0, 1, 0),))
-    return f"{quantity.name} is not computed in lanes"
+    return "it is not computed in lanes"
 
 
-def _of_directions(quantity: Quantity, listing: Listing) -> Written | str:
-    side = quantity.part
-    rest = listing.infinite if side == "task_directions" else listing.zero
-    if rest and listing.kind != "kinematic":
-        return f"{quantity.name}: lanes give the directions of finite force efficiencies only"
+def _of_directions(quantity: Quantity, listing: Listing) -> Written | None:
+    """Directions of finite efficiencies; None where others have this side, too."""
+    if listing.infinite if quantity.part == "task_directions" else listing.zero:
+        return None
     entries, size = quantity.shape
     pieces = (
         Piece("nothing", 0, listing.infinite * size, 0),
-        Piece(listing.sides(side), 0, listing.finite * size, listing.infinite * size),
+        Piece(listing.sides(quantity.part), 0, listing.finite * size, listing.infinite * size),
         Piece("nothing", 0, (entries - listing.last) * size, listing.last * size),
     )
-    kept = tuple(piece for piece in pieces if piece.count)
-    if not rest:
-        return Written(listing.want, kept)
-    # Infinite ones come before the finite ones and have no motor side, zeros behind them and no task side.
-    of_rest = slice(0, rest) if side == "task_directions" else slice(listing.last, listing.last + rest)
-
-    def write(raw: RawLanes, out: Block) -> None:
-        bases = raw.free if side == "task_directions" else raw.idle
-        roots = listing.roots if side == "task_directions" else listing.motor_roots
-        out[:, of_rest] = _rest_directions(raw, bases, roots)
-
-    return Written(listing.want | o.REST, kept, writer=write)
+    return Written(listing.want, tuple(piece for piece in pieces if piece.count))
 
 
-def _rest_directions(raw: RawLanes, bases: NDArray[np.float64] | None, roots: Vector) -> NDArray[np.float64]:
-    """Settled directions of one subspace a lane, as the spectrum of one configuration gives them."""
-    found = np.array(bases, dtype=np.float64)
-    if found.shape[1] > 1:
-        for lane in np.flatnonzero(raw.certain):
-            found[lane] = settled(found[lane].T).T
-    found /= roots
-    size = np.abs(found)
-    first = (size >= size.max(axis=2, keepdims=True) * (1.0 - 1e-9)).argmax(axis=2)
-    signs = np.where(np.take_along_axis(found, first[:, :, None], axis=2) < 0.0, -1.0, 1.0)
-    return np.asarray(found * signs + 0.0)
+def _of_relation(quantity: Quantity, listing: Listing, relation: LaneRelation) -> Written:
+    """A quantity of an ellipsoid from the spectra of its relation."""
+    want = 0 if relation.squeezing is not None else o.MOTIONS | o.REST
+    finite = slice(listing.infinite, listing.last)
+
+    def efficiencies(block: LaneBlock, out: Block) -> None:
+        out[...] = _LISTED[listing.codes + [NO_CLASS] * (out.shape[1] - len(listing.codes))]
+        out[:, finite] = relation.spectra(block).ratios ** 2
+
+    def extreme(block: LaneBlock, out: Block) -> None:
+        ratios = relation.spectra(block).ratios
+        out[:] = ratios[:, 0 if quantity.part == "largest" else -1] ** 2 if listing.finite else np.nan
+
+    def directions(block: LaneBlock, out: Block) -> None:
+        found, task = relation.spectra(block), quantity.part == "task_directions"
+        out[...] = np.nan
+        out[:, finite] = found.task if task else found.motor
+        if task:
+            out[:, : listing.infinite] = found.infinite[:, : listing.infinite]
+        elif listing.zero:
+            out[:, listing.last : listing.last + listing.zero] = found.zero
+
+    def bounds(block: LaneBlock, out: Block) -> None:
+        efficiencies(block, out)
+        out[np.isinf(out)] = 0.0
+        out[:, finite] = relation.bounds(block)
+
+    writers: dict[str, Writer] = {
+        "efficiencies": efficiencies, "smallest": extreme, "largest": extreme, "task_directions": directions,
+        "motor_directions": directions, "bounds": bounds,
+    }  # fmt: skip
+    return Written(want, writer=writers[quantity.part])
 
 
-def _of_index(quantity: Quantity, listing: Listing) -> Written | str:
-    if listing.infinite:
-        return f"{quantity.name}: lanes take indices of bounded ellipsoids only"
-    s = 2 if len(listing.roots) == 3 else 3
-    chosen = {"translation": slice(0, s), "rotation": slice(s, None), "all": slice(None)}[quantity.on]
-    roots = listing.roots[chosen]
-    index = INDEX_OF_AXES[quantity.part]
-    from vincula.kernels.semi_axes import singular_values  # numba is there: this is for lanes
-
-    def of_all(raw: RawLanes, out: Block) -> None:
-        out[:] = index(_padded(np.sqrt(listing.values(raw)), len(roots)))
-
-    def of_part(raw: RawLanes, out: Block) -> None:
-        sides = listing.directions(raw, "task_directions")[:, :, chosen] * roots
-        axes = sides * np.sqrt(listing.values(raw))[:, :, None]
-        certain = raw.certain if raw.certain.all() else raw.certain & np.isfinite(axes).all(axis=(1, 2))
-        found = np.full((len(axes), min(axes.shape[1:])), np.nan)
-        found[certain] = singular_values(axes[certain])
-        out[:] = index(_padded(found, len(roots)))
-
-    return Written(0, writer=of_all) if quantity.on == "all" else Written(listing.want, writer=of_part)
-
-
-def _padded(axes: NDArray[np.float64], size: int) -> NDArray[np.float64]:
-    """Semi-axes, zero in the directions that a set does not reach."""
-    if axes.shape[1] == size:
-        return axes
-    return np.concatenate([axes, np.zeros((len(axes), size - axes.shape[1]))], axis=1)
-
-
-def _volume(axes: NDArray[np.float64]) -> Vector:
-    return np.asarray(np.where(axes[:, -1] == 0.0, 0.0, np.prod(axes, axis=1)))
-
-
-def _condition(axes: NDArray[np.float64]) -> Vector:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(axes[:, -1] == 0.0, np.inf, axes[:, 0] / axes[:, -1]))
-
-
-def _isotropy(axes: NDArray[np.float64]) -> Vector:
-    squares = axes**2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.exp(np.mean(np.log(squares), axis=1)) / np.mean(squares, axis=1)
-    return np.asarray(np.where(squares[:, -1] == 0.0, 0.0, found))
-
-
-INDEX_OF_AXES: Final[dict[str, Callable[[NDArray[np.float64]], Vector]]] = {
-    "yoshikawa_volume": _volume,
-    "condition": _condition,
-    "condition_number": _condition,
-    "inverse_condition_number": lambda axes: 1.0 / _condition(axes),
-    "isotropy": _isotropy,
-    "smallest_singular_value": lambda axes: np.asarray(axes[:, -1]),
-}
-"""Indices of N x semi-axes, longest first."""
+_LISTED: Final = np.array([0.0, np.nan, np.inf, np.nan, np.nan])
+"""Efficiencies by class code, without the finite ones; the last is for no class."""

@@ -42,7 +42,7 @@ def spectra_layout(path: LanePath) -> Callable[[Any], Laid]:
         if isinstance(mechanism, Mechanism):
             if not path.same_weights(mechanism):
                 raise Unsupported("other weights")
-            return program.flat.code, program.constants_of(mechanism, path.given_weights).tolist()
+            return program.flat.code, program.constants_of(mechanism, path.program_weights).tolist()
         if path.given_weights is None and repr(mechanism.weights) != repr(path.mechanism.weights):
             raise Untraceable("other weights")
         flat = flatten(mechanism, general=True)  # type: ignore[arg-type]

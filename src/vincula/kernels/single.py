@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vincula.kernels.evaluation import Evaluation
+from vincula.kernels.lane_block import LaneBlock
 from vincula.kernels.lane_path import LaneWriters
 from vincula.kernels.lane_poses import poses_in_lanes
 from vincula.kernels.lanes.outputs import UNKNOWN
@@ -93,8 +94,9 @@ class Single:
                 arrays[name] = np.zeros(shape, kind)
         for name, row in self._writers.same:
             arrays[name][...] = row
-        if self._writers.derived:
-            self._derive(room, arrays)
+        if self._writers.derived and not self._derived(room, arrays):
+            self._rooms.append(room)
+            return None
         if self._placed:
             self._places(room.values, arrays)
         self._rooms.append(room)
@@ -116,12 +118,12 @@ class Single:
         status = np.full(1, UNKNOWN, dtype=np.uint8)
         return _Room(np.empty((1, self._size)), numbers, raw, np.array(table, dtype=np.int64), status)
 
-    def _derive(self, room: _Room, arrays: dict[str, NDArray[Any]]) -> None:
-        """Quantities that are computed from others."""
+    def _derived(self, room: _Room, arrays: dict[str, NDArray[Any]]) -> bool:
+        """Write quantities that are computed from others; whether these are certain."""
         given = self._program.named(room.raw, room.status, self._writers.want)
-        with np.errstate(all="ignore"):
-            for name, writer in self._writers.derived:
-                writer(given, arrays[name][None])
+        block = LaneBlock(self._program, given, room.values, None)
+        self._writers.derive(block, {name: arrays[name][None] for name, _ in self._writers.derived})
+        return bool(block.sure[0])
 
     def _places(self, rows: NDArray[np.float64], arrays: dict[str, NDArray[Any]]) -> None:
         """Gaps, poses and values, which need more than the kernel's results."""

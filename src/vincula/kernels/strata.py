@@ -82,7 +82,7 @@ def _writers_at(
             return None
         made = make_plan(flatten(variant, general=True), program.mechanism.layout, [model.ledger], where)
         own: Any = replace(program, plan=made, code=made.code)
-        found = replace(writers.path, program=own).writers(plan.quantities)
+        found = replace(writers.path, program=own, model=model).writers(plan.quantities)
     except VinculaError:
         return None
     return None if isinstance(found, str) else found

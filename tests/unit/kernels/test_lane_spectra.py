@@ -16,9 +16,12 @@ from vincula.mechanism.mechanism import Mechanism
 
 pytest.importorskip("numba")
 
-from vincula.kernels.lanes import axes
+from vincula.kernels.lane_block import LaneBlock
+from vincula.kernels.lane_relations import internal, structural
+from vincula.kernels.lane_spectra import oriented
 from vincula.kernels.lanes.flatten import Unsupported
 from vincula.kernels.lanes.program import COUNTS, EFFORTS, MOTIONS, REST, LaneProgram, RawLanes
+from vincula.kernels.small_subspaces import settled_bases
 
 
 def flat(q: vc.Configuration) -> Vector:
@@ -86,18 +89,14 @@ def agrees(mechanism: Mechanism, program: LaneProgram, values: Matrix, raw: RawL
 
 def _rest(program: LaneProgram, raw: RawLanes) -> list[Matrix]:
     """Infinite twists, zero rates, infinite wrenches, zero torques of all lanes."""
+    assert raw.free is not None
+    assert raw.idle is not None
     of_rates, of_twists = program.roots
-    free, idle, twists, rates = raw.free, raw.idle, raw.twists, raw.rates
-    assert free is not None
-    assert idle is not None
-    assert twists is not None
-    assert rates is not None
-    return [
-        axes.infinite_twists(free, of_twists),
-        axes.zero_rates(idle, of_rates),
-        axes.infinite_wrenches(free, twists, of_twists),
-        axes.zero_torques(idle, rates, of_rates),
-    ]
+    block = LaneBlock(program, raw, np.empty((len(raw.certain), 0)), None)
+    found = raw.free, raw.idle, structural(block), internal(block)
+    bases = [settled_bases(basis, raw.certain) for basis in found]
+    factors = 1.0 / of_twists, 1.0 / of_rates, of_twists, of_rates
+    return [oriented(basis * factor) for basis, factor in zip(bases, factors, strict=True)]
 
 
 def _same_rest(

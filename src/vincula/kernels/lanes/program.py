@@ -67,7 +67,7 @@ class LaneProgram:
     def prepare(
         mechanism: Mechanism,
         weights: Weights | None = None,
-        samples: Iterable[Mapping[str, Any]] = (),
+        samples: Iterable[Mapping[str, Any] | LinearModel] = (),
         *,
         general: bool = False,
     ) -> LaneProgram:
@@ -79,14 +79,15 @@ class LaneProgram:
         Args:
             mechanism: The mechanism, with its motors.
             weights: Weights; by default those of the mechanism, else the identity.
-            samples: Closed configurations.  The home configuration is always one of them.
+            samples: Closed configurations, or the matrices there; by default the home configuration.
             general: Whether dimensions are going to differ from lane to lane.
 
         Raises:
             Unsupported: Something that the reference path alone does.
         """
         flat = flatten(mechanism, general=general)
-        models = _generic([mechanism.linearize(q) for q in (mechanism.home, *samples)])
+        given = tuple(samples) or (mechanism.home,)
+        models = _generic([q if isinstance(q, LinearModel) else mechanism.linearize(q) for q in given])
         constants, where = _constants(mechanism, flat, models[0], weights)
         plan = make_plan(flat, mechanism.layout, [m.ledger for m in models], where)
         return LaneProgram(mechanism, flat, plan, plan.code, constants, general)
@@ -292,6 +293,28 @@ def dense_matrices(
         width = 1 if len(values) == 1 else lanes_of_this_machine()
         slots = base + int(code[t.SLOTS]) + m * n
         dense_entry(width)(_rows(values), code, constants, base, columns, slots, out)
+    return out
+
+
+def singular_values_of(
+    program: LaneProgram, values: Matrix, constants: Matrix | None, matrices: NDArray[np.int64]
+) -> Matrix:
+    """Chosen singular values of parts of A = [J_a J_p -G^T] in scaled units, N x parts.
+
+    Args:
+        program: The mechanism.
+        values: N x values.
+        constants: N x constants for dimensions that differ from lane to lane.
+        matrices: For every part first column, column after the last, and which value, 1 the largest.
+    """
+    from vincula.kernels.lanes.distance_entry import distance_entry
+
+    base, given = (0, program.constants) if constants is None else (constants.shape[1], _rows(constants))
+    out = np.empty((len(values), len(matrices)))
+    if len(values):
+        columns = int(program.code[t.EVERY_COLUMN])
+        run = distance_entry(program.width(len(values)))
+        run(_rows(values), program.code, given, base, columns, matrices.ravel(), out)
     return out
 
 
