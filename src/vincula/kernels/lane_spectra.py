@@ -237,7 +237,7 @@ def _unit(rows: Matrix) -> Matrix:
 
 def on_rows(vectors: Stack, rows: Matrix, block: LaneBlock) -> Stack:
     """Every vector's products with some rows."""
-    return products(vectors, np.ascontiguousarray(rows.T)[None], block.sure)
+    return products(vectors, rows.T[None], block.sure)
 
 
 def _lengths(metric: Metric, vectors: Stack, block: LaneBlock) -> Stack:

@@ -41,7 +41,8 @@ def products(left: Stack, right: Stack, sure: Mask) -> Stack:
         sure: N.
     """
     found = np.empty((len(sure), left.shape[1], right.shape[2]))
-    _products(np.ascontiguousarray(left), np.ascontiguousarray(right), sure, found)
+    # Writable ones, for which the loop is compiled.
+    _products(np.require(left, None, ["C", "W"]), np.require(right, None, ["C", "W"]), sure, found)
     return found
 
 
@@ -61,7 +62,7 @@ def decomposed(vectors: Stack, sure: Mask) -> tuple[Matrix, Stack]:
 def lengths(vectors: Stack) -> Matrix:
     """Lengths of vectors, N x k."""
     found = np.empty(vectors.shape[:2])
-    _lengths(np.ascontiguousarray(vectors), found)
+    _lengths(np.require(vectors, None, ["C", "W"]), found)
     return found
 
 

@@ -27,7 +27,7 @@ def orthonormal(vectors: Stack, sure: Mask, rank: int | None = None) -> Stack:
 def cleared(vectors: Stack, basis: Stack, sure: Mask) -> Stack:
     """The parts of vectors orthogonal to orthonormal ones."""
     found = np.array(vectors, order="C")
-    _apart(found, np.ascontiguousarray(basis), sure)
+    _apart(found, np.require(basis, None, ["C", "W"]), sure)
     return found
 
 
@@ -35,7 +35,7 @@ def complements(basis: Stack, sure: Mask) -> Stack:
     """Orthonormal bases of what is orthogonal to orthonormal vectors: N x (p - j) x p for N x j x p."""
     count, j, p = basis.shape
     found = np.empty((count, p - j, p))
-    _complements(np.ascontiguousarray(basis), sure, found)
+    _complements(np.require(basis, None, ["C", "W"]), sure, found)
     return found
 
 

@@ -16,6 +16,7 @@ from vincula.errors import MissingExtraError, VinculaError
 from vincula.kernels.compiled import CompiledMechanism, compile_mechanism
 from vincula.kernels.lane_path import numba_is_installed
 from vincula.mechanism.catalog.registry import entry
+from vincula.weights import Weights
 
 if TYPE_CHECKING:
     from vincula.kernels.inputs import Given
@@ -24,6 +25,14 @@ if TYPE_CHECKING:
 EXAMPLE: Final = "stewart"
 """Kernels do not depend on the mechanism: one that has closing, contacts and parameters stands for all."""
 _QUANTITIES: Final = ("kinematic.efficiencies", "reference.pose")
+SQUEEZING: Final = "two-finger-grasp"
+"""One with internal forces and structural wrenches, for what is computed from the results of kernels."""
+_REST: Final = (
+    "internal_force.task_directions",
+    "passive_force.task_directions",
+    "kinematic.condition:translation",
+    "singularity.distance",
+)
 
 
 def warm_up() -> dict[str, float]:
@@ -43,6 +52,7 @@ def warm_up() -> dict[str, float]:
     compiled = compile_mechanism(_made, build=_made)
     motors = np.array([compiled.mechanism.home[name][0] for name in compiled.mechanism.active])
     pose = compiled.evaluate(None, ("reference.pose",), path="reference")["reference.pose"]
+    other = compile_mechanism(entry(SQUEEZING).mechanism({}), weights=Weights(twist=[1.0, 1.0, 0.0]))
     works: dict[str, Callable[[], int]] = {}
     for many in (False, True):
         words = "many at a time" if many else "one at a time"
@@ -50,6 +60,9 @@ def warm_up() -> dict[str, float]:
         works[f"motors, {words}"] = partial(_run, compiled, motors, "motors", many)
         works[f"poses, {words}"] = partial(_run, compiled, pose, "reference", many)
         works[f"dimensions a lane, {words}"] = partial(_dimensions, compiled, many)
+        works[f"forces and distances, {words}"] = partial(
+            _run, other, other.flat(), "configuration", many, _REST
+        )
     seconds = {}
     for words, work in works.items():
         began = time.perf_counter()
@@ -86,9 +99,15 @@ def _made(**values: float) -> Mechanism:
     return entry(EXAMPLE).mechanism(values)
 
 
-def _run(compiled: CompiledMechanism, values: Vector, given: Given, many: bool) -> int:
+def _run(
+    compiled: CompiledMechanism,
+    values: Vector,
+    given: Given,
+    many: bool,
+    quantities: tuple[str, ...] = _QUANTITIES,
+) -> int:
     lanes = np.stack([values] * 64) if many else values
-    return int(compiled.evaluate(lanes, _QUANTITIES, given=given, path="lanes").status.max())
+    return int(compiled.evaluate(lanes, quantities, given=given, path="lanes").status.max())
 
 
 def _dimensions(compiled: CompiledMechanism, many: bool) -> int:

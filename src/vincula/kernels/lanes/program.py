@@ -28,6 +28,7 @@ from vincula.kernels.lanes.plan import Plan, make_plan
 from vincula.kernels.lanes.raw_lanes import RawLanes, named, wanted
 from vincula.kernels.lanes.targets import NOTHING, Tables, address
 from vincula.kernels.lanes.threads import in_shares
+from vincula.kernels.quantities import WATCHED
 from vincula.model import LinearModel
 from vincula.numerics.counts import SummaryCounts, TwelveCounts
 from vincula.weights import Weights
@@ -323,8 +324,8 @@ def _generic(models: list[LinearModel]) -> list[LinearModel]:
     known = [m for m in models if m.ledger.summary and m.ledger.status == "certain"]
     if not known:
         raise Unsupported("no sample configuration has certain ranks")
-    least = min(m.ledger.summary.mobility + m.ledger.summary.indeterminacy for m in known)
-    chosen = [m for m in known if m.ledger.summary.mobility + m.ledger.summary.indeterminacy == least]
+    sizes = [sum(m.ledger.rank(name) for name in WATCHED) for m in known]
+    chosen = [m for m, size in zip(known, sizes, strict=True) if size == max(sizes)]
     return [m for m in chosen if m.ledger.summary == chosen[-1].ledger.summary]
 
 
