@@ -5,14 +5,12 @@ Imported late, and only where numba is installed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Final
-
 import numpy as np
 from numpy.typing import NDArray
 
 from vincula.analysis.indices import components_of_part
-from vincula.arrays import Matrix, Vector
+from vincula.arrays import Matrix
+from vincula.kernels.index_formulas import INDEX_OF_AXES
 from vincula.kernels.lane_block import LaneBlock
 from vincula.kernels.lane_quantities import Block, Listing, Written
 from vincula.kernels.lane_spectra import LaneRelation, certainly, on_rows
@@ -47,7 +45,7 @@ def index_written(quantity: Quantity, listing: Listing) -> Written | str:
 
 def _of_kernel(quantity: Quantity, listing: Listing, chosen: list[int]) -> Written:
     """An index of a bounded ellipsoid whose finite efficiencies a kernel gives."""
-    roots, index = np.diag(listing.sample.task_weight.factor), _INDEX[quantity.part]
+    roots, index = np.diag(listing.sample.task_weight.factor), INDEX_OF_AXES[quantity.part]
     kinematic, size = listing.kind == "kinematic", len(chosen)
 
     def values(block: LaneBlock) -> Matrix:
@@ -86,7 +84,7 @@ def _of_relation(
         lines: Lines that its shadow on them has.
         axes: Semi-axes that its shadow has.
     """
-    factor, index = relation.task.factor[:, chosen], _INDEX[quantity.part]
+    factor, index = relation.task.factor[:, chosen], INDEX_OF_AXES[quantity.part]
     size = decide_rank(factor, name="weights of the chosen components").rank
     if not (lines or axes):
         return Written(same=float(index(np.zeros((1, size)))[0]))
@@ -119,32 +117,3 @@ def _padded(axes: NDArray[np.float64], size: int) -> NDArray[np.float64]:
     if axes.shape[1] == size:
         return axes
     return np.concatenate([axes, np.zeros((len(axes), size - axes.shape[1]))], axis=1)
-
-
-def _volume(axes: NDArray[np.float64]) -> Vector:
-    return np.asarray(np.where(axes[:, -1] == 0.0, 0.0, np.prod(axes, axis=1)))
-
-
-def _condition(axes: NDArray[np.float64]) -> Vector:
-    flat, unbounded = axes[:, -1] == 0.0, np.isinf(axes[:, 0])
-    neither = unbounded & (flat | np.isinf(axes[:, -1]))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(neither, np.nan, np.where(flat, np.inf, axes[:, 0] / axes[:, -1])))
-
-
-def _isotropy(axes: NDArray[np.float64]) -> Vector:
-    squares = axes**2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.exp(np.mean(np.log(squares), axis=1)) / np.mean(squares, axis=1)
-    return np.asarray(np.where(np.isinf(axes[:, 0]), np.nan, np.where(squares[:, -1] == 0.0, 0.0, found)))
-
-
-_INDEX: Final[dict[str, Callable[[NDArray[np.float64]], Vector]]] = {
-    "yoshikawa_volume": _volume,
-    "condition": _condition,
-    "condition_number": _condition,
-    "inverse_condition_number": lambda axes: 1.0 / _condition(axes),
-    "isotropy": _isotropy,
-    "smallest_singular_value": lambda axes: np.asarray(axes[:, -1]),
-}
-"""Indices of semi-axes, longest first."""

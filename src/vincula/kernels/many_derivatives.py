@@ -28,7 +28,7 @@ from vincula.arrays import Matrix
 from vincula.kernels.dimensions import Dimensions
 from vincula.kernels.evaluation import OK
 from vincula.kernels.gradients_one_by_one import DISTANCE, SMOOTH
-from vincula.kernels.lane_quantities import INDEX_OF_AXES
+from vincula.kernels.index_formulas import INDEX_OF_AXES
 from vincula.kernels.many_sensitivities import ManyAxes, ManySensitivities
 from vincula.kernels.many_tangents import ManyTangents
 from vincula.kernels.plans import model_without_numbers

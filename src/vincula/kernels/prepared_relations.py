@@ -15,15 +15,12 @@ from vincula.arrays import Vector
 from vincula.kernels.lane_relations import Squeezing
 from vincula.kernels.lane_spectra import LaneRelation, RelationName, Sizes
 from vincula.kernels.lanes.flatten import Unsupported
-from vincula.kernels.lanes.metrics import GRADED, metric_constants
+from vincula.kernels.lanes.metrics import APART, metric_constants
 from vincula.mechanism.mechanism import Mechanism
 from vincula.model import LinearModel
 from vincula.numerics.lapack import singular_values
 from vincula.numerics.metric import Metric
 from vincula.weights import Weights
-
-MIXED: Final = 1e4
-"""Weights whose roots differ by more than this on one side cost too many digits where they mix components."""
 
 _KIND: Final[dict[RelationName, Kind]] = {
     "motions": "kinematic", "equilibria": "passive force", "internal forces": "internal force"
@@ -49,21 +46,20 @@ def lane_relation(
     kind = _KIND[name]
     task, motor = (weights.metric(side(kind), model) for side in (task_quantity, motor_quantity))
     of_task, of_motor = _factors(model, name)
-    definite = task.definite and motor.definite
-    long = definite and task.diagonal is not None and motor.diagonal is not None and name != "internal forces"
     for metric, factor, side in (
         (task, of_task, task_quantity(kind)),
         (motor, of_motor, motor_quantity(kind)),
     ):
-        limit = GRADED if long else MIXED
-        if _spread(metric, factor) > limit:
-            return f"weights of {side} differ by more than {limit**2:g}"
+        if _spread(metric, factor) > APART:
+            return f"weights of {side} differ by more than {APART**2:g} in units of the characteristic length"
     squeezing = Squeezing.of(mechanism, model) if name == "internal forces" else None
     if isinstance(squeezing, str):
         return squeezing
     found = spectrum_of_kind(kind, model, weights, task, motor)
     sizes = Sizes(found.infinite.shape[1], len(found.ratios), found.zero.shape[1], found.undefined)
-    counted = definite and not (task.required_zero.shape[1] or motor.required_zero.shape[1])
+    counted = (
+        task.definite and motor.definite and not (task.required_zero.shape[1] or motor.required_zero.shape[1])
+    )
     return LaneRelation(
         name, task, motor, of_task, of_motor, sizes, counted, magnification(model, task, motor), squeezing
     )
