@@ -16,6 +16,7 @@ from vincula.sweep.zero_curves import zero_curves
 xarray = pytest.importorskip("xarray", reason="extra sweep")
 pytest.importorskip("zarr", reason="extra sweep")
 BOTH = ["branch.assembly", "branch.working"]
+INDEX = "kinematic.inverse_condition_number:translation"
 
 
 @cache
@@ -31,7 +32,8 @@ def turned_3rrr() -> Any:
 def driven_five_bar() -> Any:
     """A five-bar over its motors, across the line where its right leg is straight."""
     over = {"o1": np.linspace(-0.3, 0.1, 5), "o5": np.linspace(-0.7, -0.1, 7)}
-    return vc.Sweep(vc.load("example:five-bar"), over, [*BOTH, "kinematic.efficiencies"]).to_xarray()
+    quantities = [*BOTH, "kinematic.efficiencies", INDEX]
+    return vc.Sweep(vc.load("example:five-bar"), over, quantities).to_xarray()
 
 
 def _curves(data: Any, name: str, group: int) -> list[np.ndarray]:
@@ -157,6 +159,9 @@ def test_curves_are_drawn_by_type() -> None:
     ax = driven_five_bar().vincula.map("kinematic.efficiencies", entry=1)
     assert lost.colour in {line.get_color() for line in ax.lines}
     assert ax.figure.axes[-1].get_ylabel() == "efficiencies\nkinematic, entry 1"
+    for name in (INDEX, INDEX.replace(":", ".")):
+        ax = driven_five_bar().vincula.map(name)
+        assert ax.figure.axes[-1].get_ylabel() == "inverse condition number\nkinematic, translation"
     ax = driven_five_bar().vincula.map("branch.working", group="o5")
     assert ax.figure.axes[-1].get_ylabel() == "working\nbranch, o5"
     pyplot.close("all")

@@ -189,7 +189,7 @@ def _name_axes(data: xarray.Dataset, x: str, y: str, ax: Any) -> None:
 
 def _titled(array: xarray.DataArray, name: str) -> str:
     """A quantity in words, which of its numbers, and their unit; no line too long for its place."""
-    what, _, of = in_words(name).partition("\n")
+    what, _, of = in_words(array.attrs.get("quantity", name)).partition("\n")
     chosen = [_which(dim, value) for dim, value in array.attrs.get("chosen", {}).items()]
     unit = array.attrs.get("units", "")
     lines = [f"{what} [{unit}]" if unit else what, ", ".join([part for part in (of, *chosen) if part])]

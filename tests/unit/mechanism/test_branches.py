@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.laws.random_mechanisms import random_mechanism
 from tests.unit.mechanism.linkages import circles_meet, five_bar, five_bar_o3, four_bar, joint_point
 
 import vincula as vc
@@ -76,16 +77,30 @@ def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
 def test_groups_of_the_structure_take_in_every_entry(entry: Any) -> None:
     """No entry of the matrices, at any configuration, joins a group with anything outside."""
     mechanism = example(entry.name)
+    for q in sample_configurations(mechanism):
+        _hold_every_entry(mechanism, q)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_groups_of_random_mechanisms(seed: int) -> None:
+    """Limbs that branch, inner loops, couplings, contacts: home is on its own branch in every group."""
+    mechanism = random_mechanism(seed)
+    _hold_every_entry(mechanism, mechanism.home)
+    for side, groups in branch_groups(mechanism).items():
+        assert len({group.label for group in groups}) == len(groups)
+        assert (branch_measures(mechanism, mechanism.linearize(), side) > 0.0).all()
+
+
+def _hold_every_entry(mechanism: vc.Mechanism, q: vc.Configuration) -> None:
     motors, joints = len(mechanism.layout.active), len(mechanism.layout.columns)
     columns = {"assembly": range(motors, joints + mechanism.space.dimension), "working": range(joints)}
-    for q in sample_configurations(mechanism):
-        matrix = mechanism.linearize(q).ledger.matrix("all")
-        for side, groups in branch_groups(mechanism).items():
-            inside = np.zeros(matrix.shape, dtype=bool)
-            for group in groups:
-                assert not inside[np.ix_(group.rows, group.columns)].any(), "groups do not overlap"
-                inside[np.ix_(group.rows, group.columns)] = True
-            assert not matrix[:, columns[side]][~inside[:, columns[side]]].any()
+    matrix = mechanism.linearize(q).ledger.matrix("all")
+    for side, groups in branch_groups(mechanism).items():
+        inside = np.zeros(matrix.shape, dtype=bool)
+        for group in groups:
+            assert not inside[np.ix_(group.rows, group.columns)].any(), "groups do not overlap"
+            inside[np.ix_(group.rows, group.columns)] = True
+        assert not matrix[:, columns[side]][~inside[:, columns[side]]].any()
 
 
 def test_a_branch_of_a_mechanism_that_is_singular_at_home() -> None:
