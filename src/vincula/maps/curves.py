@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -49,16 +49,24 @@ class Curve:
     crossings: tuple[Crossing, ...]
 
 
-def chains(found: Mapping[Edge, Crossing], columns: int) -> list[Chain]:
+def chains(found: Mapping[Edge, Crossing], columns: int, crossed: Collection[int] = ()) -> list[Chain]:
     """Crossings linked from cell to cell of the grid.
 
     Args:
         found: Crossings by edge of the grid.
         columns: Number of grid values of the second variable.
+        crossed: Cells, by their first corners, in which two curves cross each other.
     """
     by_edge = {_sorted(pair): crossing for pair, crossing in found.items()}
-    links = _linked(by_edge, columns)
+    links = _linked(by_edge, columns, crossed)
     return [Chain(tuple(by_edge[pair] for pair in chain), closed) for chain, closed in _followed(links)]
+
+
+def full_cells(found: Mapping[Edge, Crossing], columns: int) -> dict[int, list[Crossing]]:
+    """Cells with crossings on all four edges, by their first corners: in order round the cell."""
+    cells = {a for a, _ in found}
+    around = {corner: [found.get(pair) for pair in _around(corner, columns)] for corner in cells}
+    return {corner: [c for c in four if c is not None] for corner, four in around.items() if None not in four}
 
 
 def curves_of(chain: Chain, *, edge: bool) -> list[Curve]:
@@ -132,7 +140,9 @@ def distances(places: NDArray[np.float64], found: Iterable[Curve], size: Vector)
     return result.reshape(places.shape[:-1])
 
 
-def _linked(by_edge: Mapping[Edge, Crossing], columns: int) -> dict[Edge, list[Edge]]:
+def _linked(
+    by_edge: Mapping[Edge, Crossing], columns: int, crossed: Collection[int] = ()
+) -> dict[Edge, list[Edge]]:
     """For every crossing the crossings that come next to it on a curve."""
     links: dict[Edge, list[Edge]] = {pair: [] for pair in by_edge}
     corners: set[int] = set()
@@ -140,7 +150,8 @@ def _linked(by_edge: Mapping[Edge, Crossing], columns: int) -> dict[Edge, list[E
         corners |= {a, a - 1} if b - a == columns else {a, a - columns}
     for corner in sorted(corners):
         around = [pair for pair in _around(corner, columns) if pair in by_edge]
-        for one, two in _pairs(around, by_edge):
+        straight = [(around[0], around[2]), (around[1], around[3])] if corner in crossed else []
+        for one, two in straight or _pairs(around, by_edge):
             links[one].append(two)
             links[two].append(one)
     return links

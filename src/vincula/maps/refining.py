@@ -6,14 +6,15 @@ mechanism, followed outwards, stops.  No point is ever interpolated.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
 from vincula.arrays import Vector
-from vincula.maps.curves import GRID, Chain
+from vincula.maps.curves import GRID, Chain, full_cells
 from vincula.maps.ends import ends
-from vincula.maps.loci import Crossing, edge_points, zeros_on
+from vincula.maps.loci import Crossing, Edge, edge_points, zeros_on
 from vincula.maps.sheet import HALVINGS, Sheet
 from vincula.maps.stacked_rows import Stack
 from vincula.mechanism.closure_values import Mask
@@ -24,6 +25,8 @@ BEND: Final = 0.15
 """A bend sharper than this between two pieces of a curve is looked at more closely [rad]."""
 SHORT: Final = 0.02
 """Pieces shorter than this share of the grid's step are not halved."""
+CROSSED: Final = 0.2
+"""Where two curves cross a measure is below this share of what it is at the corners of the cell."""
 FOLDED: Final = 1e-7
 """What is followed is zero at a fold to this accuracy."""
 EXTENSIONS: Final = 5
@@ -75,6 +78,34 @@ def _pieces(points: list[Crossing], chain: Chain) -> Mask:
     """One truth value for every piece between neighbours of a chain."""
     count = len(points) if chain.closed else len(points) - 1
     return np.ones(max(count, 0), dtype=bool)
+
+
+def crossed_cells(sheet: Sheet, found: Mapping[Edge, Crossing], k: int) -> list[int]:
+    """Cells of the grid in which two curves cross each other, by their first corners.
+
+    Four zeros on the edges of a cell are two curves that keep apart, or two that cross: then the measure all
+    but vanishes where the straight lines between opposite zeros meet.
+
+    Args:
+        sheet: The sheet.
+        found: Zeros of a watched measure on edges of the grid.
+        k: Number of the watched block.
+    """
+    result = []
+    for corner, four in full_cells(found, sheet.shape[1]).items():
+        a, b, c, d = (crossing.values for crossing in four)
+        ways = np.stack([c - a, b - d], axis=1)
+        if abs(float(np.linalg.det(ways / sheet.steps[:, None]))) < 1e-9:
+            continue
+        place = a + np.linalg.solve(ways, b - a)[0] * (c - a)
+        begin = np.array([corner])
+        good, points = sheet.branch.advance(
+            sheet.points_at(begin), sheet.places(begin), place[None], halvings=HALVINGS
+        )
+        corners = corner + np.array([0, 1, sheet.shape[1], sheet.shape[1] + 1])
+        if good[0] and points.smallest[0, k] < CROSSED * sheet.smallest[corners, k].min():
+            result.append(corner)
+    return result
 
 
 def extended(sheet: Sheet, found: list[Chain], k: int) -> list[Chain]:

@@ -16,7 +16,7 @@ from vincula.maps.curves import GRID, Chain, Curve, chains, curves_of, distances
 from vincula.maps.loci import KINDS, crossings, outer_edge, singularity
 from vincula.maps.map_data import MapSheet, SingularityMap, size_of
 from vincula.maps.minima import hidden
-from vincula.maps.refining import extended, refined
+from vincula.maps.refining import crossed_cells, extended, refined
 from vincula.maps.sheet import Sheet, mask
 from vincula.maps.sides import singular_everywhere
 from vincula.maps.variables import Plane, Variable
@@ -175,7 +175,8 @@ def _singular(sheet: Sheet) -> list[Curve]:
         if sheet.branch.kept[k] == 0 or k in everywhere or k == sheet.branch.followed:
             continue
         known = on_edges.get(watch.name, {})
-        lines = [*chains(known, sheet.shape[1]), *hidden(sheet, k, known)]
+        crossed = crossed_cells(sheet, known, k)
+        lines = [*chains(known, sheet.shape[1], crossed), *hidden(sheet, k, known)]
         for line in extended(sheet, refined(sheet, lines, k), k):
             found += curves_of(line, edge=False)
     return found
