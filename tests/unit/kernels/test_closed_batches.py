@@ -68,6 +68,33 @@ def test_a_grid_around_a_hole_stays_on_one_branch() -> None:
         assert branch_of(linkage, linkage.home.from_flat(flat)).assembly == "+", grid[tuple(place)]
 
 
+def test_holes_that_are_smaller_than_a_step_are_not_leapt() -> None:
+    """A pen carried by two legs, each of which cannot come near its own foot: legs stay bent as they were."""
+    places = {"o1": (-0.5, 0), "o2": (-1, 1), "o3": (0, 1.8), "o4": (1, 1), "o5": (0.5, 0)}
+    bars = ["ground", "a", "b", "c", "d", "ground"]
+    joints = [
+        vc.Revolute(name, one, two, at=place)
+        for (name, place), one, two in zip(places.items(), bars, bars[1:], strict=False)
+    ]
+    linkage = vc.Mechanism.planar(
+        joints=[*joints, vc.Revolute("pen", "b", "tip", at=places["o3"])],
+        reference=vc.Reference("tip", origin=places["o3"]),
+        active=["o1", "o5"],
+        weights=vc.Weights(),
+    )
+    across, up = np.meshgrid(np.linspace(-2.5, 2.5, 21), np.linspace(-2.6, 2.6, 31), indexing="ij")
+    poses = np.stack([across, up, np.zeros_like(up)], axis=-1)
+    found = vc.compile(linkage).evaluate(poses, ("branch.working",), given="reference", path="lanes")
+    ok = found.status == 0
+    lengths = [np.hypot(0.5, 1.0), np.hypot(1.0, 0.8)]
+    reach = np.ones_like(ok)
+    for foot in (-0.5, 0.5):
+        far = np.hypot(across - foot, up)
+        reach &= (far < sum(lengths)) & (far > abs(lengths[0] - lengths[1]))
+    assert np.array_equal(ok, reach)
+    assert (found["branch.working"][ok] > 0.0).all()
+
+
 def _within_reach(linkage: vc.Mechanism, grid: np.ndarray) -> np.ndarray:
     """Whether coupler and link reach from the end of one driven bar to that of the other."""
     o1, o2, o3, o4, o5 = (linkage.joint[f"o{k}"].frame_on_first.position for k in range(1, 6))

@@ -34,6 +34,9 @@ from vincula.kernels.lanes.vector import (
 
 LONGEST_WAY: Final = 0.35
 """What is given moves by no more at once [rad, or lengths L]."""
+LARGEST_CHANGE: Final = 0.5
+"""No value changes by more over one way [rad, lengths L]: a longer one may leap a hole that no way leads through,
+such as the one about the foot of a leg whose two bars differ little."""
 SHORTEST_WAY: Final = 1e-4
 """A lane that does not close over a way as short as this does not arrive."""
 MOST_WAYS: Final = 400
@@ -75,7 +78,7 @@ def walk(
         _set_out(w, code, plan, base, target, share, whole, live, hope, z)
         closed, count, gap = close_lanes(w, code, plan, constants, base, live, True, z)
         steps = steps + count
-        good = more(closed, half)
+        good = both(more(closed, half), at_most(_change(w, code, plan, base, z), splat(LARGEST_CHANGE, z)))
         _keep(w, code, plan, base, good, z)
         there = both(good, whole)
         arrived = select(there, one, arrived)
@@ -151,6 +154,15 @@ def _distance(w: Slots, plan: Code, base: int, target: int, z: Lane) -> Lane:
         change = absolute(load(w, target + k, z) - load(w, here + k, z))
         # Not a number where either is none: nothing is near it then.
         most = select(at_most(change, most), most, change)
+    return most
+
+
+@kernel
+def _change(w: Slots, code: Code, plan: Code, base: int, z: Lane) -> Lane:
+    """Largest change of a value since the lane last stood."""
+    saved, values, most = base + plan[c.STATE], base + code[t.VALUE_SLOT], z
+    for k in range(plan[c.STATE_VALUES]):
+        most = larger(absolute(load(w, values + k, z) - load(w, saved + k, z)), most)
     return most
 
 
