@@ -1,6 +1,8 @@
 """Where the closing of every chunk starts, fixed before the run: a coarse path followed once, in order.
 
-In lanes where they carry a closed configuration along its branch, else by `Mechanism.follow`.
+In lanes where they carry a closed configuration along its branch, else by `Mechanism.follow`.  Where neither
+arrives (a first point out of reach), the chunk starts from the configuration before: a search for one that
+closes might find another branch, and the chunk with it.
 """
 
 from __future__ import annotations
@@ -19,19 +21,19 @@ from vincula.mechanism.paths import Path
 from vincula.sweep.chunks import near_walk
 
 if TYPE_CHECKING:
+    from vincula.kernels.lanes.closing import LaneClosing
     from vincula.sweep.sweep import Sweep
 
 THROUGH: Final = ("platform free", "motors without authority", "internal")
-"""Singularities that the coarse path passes where it goes on beyond them."""
+"""Singularities that are passed where a path goes on beyond them and arrives: a start may be singular."""
 
 
 def coarse_path(sweep: Sweep, last: Vector | None, chunks: range) -> Iterator[tuple[int, Vector]]:
     """A configuration near the first point of each chunk, one after the other.
 
-    From the one before it the path to the next first point is followed, through singularities where it
-    goes on beyond them.  Where it ends early, or the geometry changes as well, the loops are closed at the
-    first point from there; where that fails, the chunk starts from the last configuration there was.
-    Each is found by itself, so that it does not matter which are asked for together.
+    From the one before it the path to the next first point is followed; where the geometry changes as well,
+    the loops are closed at the first point.  A chunk whose first point is not reached so starts from the last
+    configuration there was.  Each is found by itself: it does not matter which are asked for together.
 
     Args:
         sweep: The sweep.
@@ -43,7 +45,7 @@ def coarse_path(sweep: Sweep, last: Vector | None, chunks: range) -> Iterator[tu
     rows, parameters = inputs.rows(np.concatenate([_first(sweep, chunk) for chunk in chunks]))
     for k, chunk in enumerate(chunks):
         values = {name: float(column[k]) for name, column in parameters.items()}
-        current = _next(sweep, mechanism, rows[k], values, current)
+        current = _next(sweep, mechanism, chunk, rows[k], values, current)
         yield chunk, current.flat
 
 
@@ -61,29 +63,30 @@ def _first(sweep: Sweep, chunk: int) -> Matrix:
 
 
 def _next(
-    sweep: Sweep, mechanism: Mechanism, row: Vector, parameters: dict[str, float], current: Configuration
+    sweep: Sweep,
+    mechanism: Mechanism,
+    chunk: int,
+    row: Vector,
+    parameters: dict[str, float],
+    current: Configuration,
 ) -> Configuration:
     if parameters and sweep.compiled.build is not None:
         return _closed(sweep.compiled.build(**parameters), sweep, row, current) or current
-    reached = _in_lanes(sweep, row, current)
-    if reached is not None:
-        return reached
+    if not isinstance(sweep.closing, str) and sweep.closing.starts_at(current):
+        reached = _in_lanes(sweep.closing, row, current)
+        if reached is not None or chunk:  # lanes do not leave a singular start: the first path may have to
+            return reached or current
     try:
         path = _followed(mechanism, sweep, row, current)
     except VinculaError:
         return _closed(mechanism, sweep, row, current) or current
-    if path.complete:
-        return path.end
-    return _closed(mechanism, sweep, row, path.end) or _closed(mechanism, sweep, row, current) or path.end
+    return path.end if path.complete else current
 
 
-def _in_lanes(sweep: Sweep, row: Vector, current: Configuration) -> Configuration | None:
+def _in_lanes(closing: LaneClosing, row: Vector, current: Configuration) -> Configuration | None:
     """The configuration on the branch of the present one; None where lanes do not get there."""
-    closing = sweep.closing
-    if isinstance(closing, str) or not closing.starts_at(current):
-        return None
     found = closing.run(row[np.newaxis], current, 1, 1)
-    return sweep.mechanism.home.from_flat(found.values[0]) if found.closed[0] else None
+    return closing.mechanism.home.from_flat(found.values[0]) if found.closed[0] else None
 
 
 def _followed(mechanism: Mechanism, sweep: Sweep, row: Vector, current: Configuration) -> Path:

@@ -35,7 +35,7 @@ from vincula.kernels.lanes.vector import (
 LONGEST_WAY: Final = 0.35
 """What is given moves by no more at once [rad, or lengths L]."""
 LARGEST_CHANGE: Final = 0.5
-"""No value changes by more over one way [rad, lengths L]: a longer one may leap a hole that no way leads through,
+"""No value changes by more over one way [rad, lengths L]: else it may leap a hole that no way leads through,
 such as the one about the foot of a leg whose two bars differ little."""
 SHORTEST_WAY: Final = 1e-4
 """A lane that does not close over a way as short as this does not arrive."""
