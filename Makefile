@@ -63,7 +63,7 @@ test: lint
 # Without numba these tests are skipped: kernels take minutes to compile the first time.
 test-lanes: $(VENV)/.dev-ready
 	$(PIP) install --editable ".[fast]"
-	$(BIN)/pytest -q -n $(WORKERS) tests/unit/kernels tests/laws/test_batch_is_loop.py
+	$(BIN)/pytest -q -n $(WORKERS) tests/unit/kernels tests/laws/test_batch_is_loop.py tests/laws/test_batch_weights.py
 
 # Yardsticks are installed for the benchmark alone; it goes on without those that cannot be had.
 $(VENV)/.bench-ready: pyproject.toml benchmarks/requirements.txt benchmarks/requirements-gpl.txt | $(BIN)/python
