@@ -77,7 +77,7 @@ def first_wait() -> str:
     if not numba_is_installed() or any(cache_folder().glob("**/entries.spectra_entry.*.nbi")):
         return ""
     return (
-        "the kernels of batches are compiled first, once on this machine: one to four minutes "
+        "the kernels of batches are compiled first, once on this machine: some minutes "
         "(`vincula warm-up` does it beforehand)"
     )
 
