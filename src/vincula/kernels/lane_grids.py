@@ -50,7 +50,8 @@ def _in_rows(
     rows = len(inputs) // max(stretch, 1)
     if rows <= 1:
         found = closing.run(inputs, start, stretch, threads)
-        return found, np.logical_or.accumulate(found.jumped)
+        lost = np.logical_or.accumulate(found.jumped) if found.jumped.any() else found.jumped
+        return found, lost
     heads = slice(None, None, stretch)
     first, lost = _in_rows(closing, inputs[heads], shape[:-1], start, threads)
     given = np.array(inputs[heads])
